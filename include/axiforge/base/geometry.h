@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <deal.II/base/point.h>
+#include <deal.II/base/tensor.h>
+
+namespace axiforge
+{
+  /// A point (r, z) [mm] of the meridian half plane.
+  using Point = dealii::Point<2>;
+
+  /// A vector (r, z): displacement [mm], velocity [mm/s] or a direction.
+  using Vector2 = dealii::Tensor<1, 2>;
+} // namespace axiforge
