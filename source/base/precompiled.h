@@ -2,6 +2,13 @@
 #pragma once
 
 // The heavy headers, parsed once per build type (see CMakeLists.txt).
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
 #include <deal.II/base/parameter_handler.h>
 #include <deal.II/base/point.h>
 #include <deal.II/base/tensor.h>
@@ -13,10 +20,3 @@
 #include <deal.II/lac/la_parallel_vector.h>
 
 #include <fmt/format.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <memory>
-#include <string>
-#include <vector>

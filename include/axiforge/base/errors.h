@@ -8,8 +8,8 @@ namespace axiforge
 {
   /**
    * Something the user wrote is wrong: an entry, a file, a mesh, a tool inside the workpiece. The
-   * message is complete: it names the entry, its value, what is allowed and the way out. The program
-   * prints it and ends with status 1.
+   * message is complete: it names the entry, its value, what is allowed and the way out. The
+   * program prints it and ends with status 1.
    */
   class InputError : public std::runtime_error
   {

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <deal.II/base/parameter_handler.h>
+
+namespace axiforge
+{
+  /**
+   * The text of a `.prm` file with its `include` lines resolved relative to the file that has them,
+   * and the overrides of the command line applied after it.
+   *
+   * deal.II's own reader resolves includes against the working directory and reports an error with
+   * the text of an exception. This one takes the same language (`subsection`, `end`, `set a = b`,
+   * `include file`, comments from `#` on, a backslash at the end of a line joins the next one to
+   * it; keywords all lower or all upper case) and keeps file and line of every statement, so that a
+   * mistake is told in one line: where it is, what is wrong, what is allowed.
+   *
+   * Every `subsection` must be closed in the file that opens it. The last `set` of an entry counts.
+   */
+  class ParameterFile
+  {
+  public:
+    /**
+     * Reads @p path and the files it includes.
+     *
+     * @param overrides as given to `--set`: "Section/Sub section/Entry = value"; a name cannot
+     * contain
+     *   "/" or "=", a value cannot contain "#" or a line break.
+     *
+     * Throws InputError if a file cannot be read or includes itself, if a line is no statement, if
+     * subsections are not balanced, or if an override is malformed.
+     */
+    explicit ParameterFile(const std::string &path, const std::vector<std::string> &overrides = {});
+
+    /**
+     * Sets the entries of @p prm, which is at its top level, in the order of the file, overrides
+     * last, and leaves it at its top level whether it throws or not.
+     *
+     * @param skip_undefined pass over entries and sections that are not declared: for the first of
+     * two passes, when entries of the first tell which sections there are.
+     *
+     * Throws InputError with a message of one line for an unknown section or entry (with the names
+     * that are known, and the nearest), for a value its pattern does not allow, and for whatever an
+     * action of the entry throws.
+     */
+    void parse(dealii::ParameterHandler &prm, bool skip_undefined = false) const;
+
+    /// The path as given.
+    const std::string &path() const;
+
+    /// The folder of the file, "." for a bare name: relative paths in the scene are relative to it.
+    std::string directory() const;
+
+    /// The file byte by byte as it was read, without includes and overrides.
+    const std::string &text() const;
+
+    /**
+     * One file that says all: includes put in their places, overrides appended as sections.
+     * Comments are not kept.
+     */
+    std::string resolved_text() const;
+
+  private:
+    enum class Keyword
+    {
+      subsection,
+      end,
+      set
+    };
+
+    struct Statement
+    {
+      Keyword     keyword;
+      std::string name;   ///< of the section or the entry; empty for `end`
+      std::string value;  ///< of the entry
+      std::string origin; ///< "file:line", or the override it comes from
+    };
+
+    void read_file(const std::string &path, std::vector<std::string> &open_files);
+    void read_line(const std::string        &line,
+                   const std::string        &path,
+                   const std::string        &origin,
+                   std::vector<Statement>   &open_sections,
+                   std::vector<std::string> &open_files);
+    void add_override(const std::string &text);
+
+    std::string            path_;
+    std::string            text_;
+    std::vector<Statement> statements_;
+  };
+} // namespace axiforge

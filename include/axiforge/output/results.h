@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <axiforge/base/atomic_file.h>
+#include <axiforge/scene/scene.h>
+#include <axiforge/state/state.h>
+#include <axiforge/state/step_record.h>
+
+namespace axiforge::output
+{
+  /// What is kept beside the results so that they can be made again.
+  struct Provenance
+  {
+    std::string input;      ///< the .prm as given, included files and overrides in their places
+    std::string parameters; ///< all entries in effect
+    std::string versions;   ///< program, revision, libraries, command line
+  };
+
+  /**
+   * Writes the folder of a run: `input.prm`, `parameters.prm`, `versions.txt`, `history.csv` (one
+   * row per accepted step), VTU files in `fields/` with `fields.pvd` and `tools.pvd`. Every file appears
+   * whole or not at all; a row of the history is written at once. All functions are collective.
+   */
+  class Results
+  {
+  public:
+    /// Makes the folder and writes what is known before the first step.
+    Results(const scene::Scene &scene,
+            const State        &state,
+            const std::string  &directory,
+            const Provenance   &provenance);
+
+    /// Writes the row of the step, and the fields if they are due.
+    void write(const State &state, const StepRecord &record);
+
+    /// Writes the fields of the present state unless they are there.
+    void write_fields(const State &state);
+
+    const std::string &directory() const
+    {
+      return folder;
+    }
+
+  private:
+    bool fields_due(const State &state, const StepRecord &record) const;
+    void write_collections() const;
+
+    const scene::Scene                         &scene;
+    std::string                                 folder;
+    bool                                        is_first_rank;
+    std::optional<CsvFile>                      history;                 ///< first rank only
+    std::vector<std::pair<double, std::string>> field_files, tool_files; ///< time, name
+    unsigned int                                last_fields_step   = static_cast<unsigned int>(-1);
+    double                                      last_fields_stroke = 0, last_fields_time = 0;
+    double                                      wall_seconds = 0;
+  };
+
+  /// Column names of history.csv.
+  std::vector<std::string> history_columns(const scene::Scene &scene);
+
+  /// The figures of a step in the order of the columns.
+  std::vector<double>
+  history_row(const scene::Scene &scene, const StepRecord &record, double wall_seconds);
+
+  /// Writes the fields of the state in its present configuration as one VTU file. Collective.
+  void write_vtu(const State &state, const std::string &path);
+
+  /// Writes the outlines of the tools at a time as a VTU file of lines (first rank only).
+  void write_tools(const scene::Scene &scene, double time, const std::string &path);
+} // namespace axiforge::output

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <deal.II/base/mpi.h>
+
+namespace axiforge::process
+{
+  /// What the command line says.
+  struct RunOptions
+  {
+    std::string              parameter_file;
+    std::vector<std::string> overrides;                ///< "Section/Entry = value"
+    std::string              output_directory;         ///< empty: as the scene says
+    bool                     validate         = false; ///< read and check everything, run nothing
+    bool                     print_parameters = false;
+    bool                     quiet            = false; ///< no progress lines
+    std::string              version, revision, command_line;
+  };
+
+  /**
+   * Reads the scene and runs it: the loop over steps. Collective.
+   * @throws InputError, ComputationError
+   */
+  void run(const RunOptions &options, MPI_Comm communicator);
+} // namespace axiforge::process

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <axiforge/base/geometry.h>
+#include <axiforge/base/geometry_parameters.h>
+#include <axiforge/base/parameter_file.h>
+#include <axiforge/laws/friction.h>
+#include <axiforge/laws/material.h>
+#include <axiforge/tools/motion.h>
+#include <axiforge/tools/profile.h>
+#include <axiforge/tools/profile_reader.h>
+
+namespace axiforge::scene
+{
+  /// `subsection Process`: what the run ends with.
+  struct ProcessParameters
+  {
+    std::string driving_tool;
+    double      end_stroke = 0;
+    double      end_time   = 0;
+
+    void declare(dealii::ParameterHandler &prm);
+  };
+
+  enum class TimeScheme
+  {
+    midpoint,
+    explicit_euler
+  };
+
+  /// `subsection Time stepping`
+  struct TimeParameters
+  {
+    std::string  scheme_name              = "midpoint";
+    double       stroke_per_step          = 0;
+    double       time_step                = 0;
+    double       largest_reduction        = 0.01;
+    double       largest_strain_increment = 0.1;
+    double       largest_motion           = 0.25;
+    double       smallest_step            = 1e-4;
+    unsigned int most_steps               = 100000;
+
+    TimeScheme scheme() const
+    {
+      return scheme_name == "midpoint" ? TimeScheme::midpoint : TimeScheme::explicit_euler;
+    }
+
+    void declare(dealii::ParameterHandler &prm);
+  };
+
+  /// `subsection Flow solver`
+  struct FlowParameters
+  {
+    std::string  incompressibility = "iterated penalty";
+    double       penalty           = 1e8;
+    std::string  iteration         = "newton";
+    double       regularisation    = 1e-3;
+    double       reference_rate    = 0;
+    double       tolerance         = 1e-5;
+    unsigned int most_iterations   = 60;
+    std::string  linear_solver     = "automatic";
+    std::string  ordering          = "automatic";
+
+    bool iterated() const
+    {
+      return incompressibility == "iterated penalty";
+    }
+    bool newton() const
+    {
+      return iteration == "newton";
+    }
+
+    void declare(dealii::ParameterHandler &prm);
+  };
+
+  /// `subsection Output`
+  struct OutputParameters
+  {
+    std::string  directory;
+    double       interval_stroke = 0;
+    unsigned int interval_steps  = 0;
+    std::string  format          = "vtu";
+
+    void declare(dealii::ParameterHandler &prm);
+  };
+
+  /// `subsection Tool NAME`
+  struct ToolParameters
+  {
+    std::string              name;
+    GeometryParameters   geometry;
+    tools::MotionParameters  motion;
+    laws::FrictionParameters friction;
+
+    void declare(dealii::ParameterHandler &prm);
+  };
+
+  /// `subsection Boundary NAME`: a condition on a named part of the workpiece's boundary.
+  struct BoundaryParameters
+  {
+    std::string name;
+    std::string type       = "velocity";
+    std::string velocity_r = "free", velocity_z = "free", pressure = "0";
+
+    void declare(dealii::ParameterHandler &prm);
+  };
+
+  /**
+   * Everything a .prm says, as read: values within their patterns, but not yet checked against each
+   * other or against the mesh.
+   */
+  struct SceneParameters
+  {
+    explicit SceneParameters(const ParameterFile &file);
+
+    std::string                     title;
+    GeometryParameters     workpiece;
+    laws::MaterialParameters        material;
+    std::vector<ToolParameters>     tools;
+    std::vector<BoundaryParameters> boundaries;
+    ProcessParameters               process;
+    TimeParameters                  time;
+    FlowParameters                  flow;
+    OutputParameters                output;
+    std::string                     directory; ///< of the .prm: relative names are resolved there
+
+    /// All entries with their values in effect and their texts, in .prm form.
+    std::string print() const;
+
+  private:
+    void declare(dealii::ParameterHandler &prm);
+
+    std::string                               tool_names, boundary_names;
+    std::shared_ptr<dealii::ParameterHandler> handler;
+  };
+
+  /// What the scene needs to know of the meshed workpiece to check and complete itself.
+  struct WorkpieceOutline
+  {
+    std::vector<Point>       boundary_points; ///< of the surface that can touch tools
+    std::vector<std::string> boundary_names;
+    Point                    lower, upper; ///< bounding box [mm]
+  };
+
+  struct Tool
+  {
+    std::string    name;
+    tools::Profile profile;
+    tools::Motion  motion;
+    laws::Friction friction;
+  };
+
+  /// Velocity or pressure on a named part of the workpiece's boundary.
+  struct BoundaryCondition
+  {
+    std::string name;
+    bool        is_velocity;
+    /// (position, time) -> [mm/s]; an empty one leaves the component free.
+    std::function<double(const Point &, double)> velocity[2];
+    std::function<double(const Point &, double)> pressure; ///< [MPa]
+  };
+
+  /**
+   * The scene: everything the .prm says, checked, and const from then on.
+   */
+  class Scene
+  {
+  public:
+    /**
+     * Checks the parameters against each other and against the workpiece.
+     * @throws InputError that names entry, value, what is allowed and the way out
+     */
+    Scene(const SceneParameters &parameters, const WorkpieceOutline &outline);
+
+    std::string                    title;
+    laws::Material                 material;
+    std::vector<Tool>              tools;
+    std::vector<BoundaryCondition> boundaries;
+    ProcessParameters              process;
+    TimeParameters                 time;
+    FlowParameters                 flow;
+    OutputParameters               output;
+
+    unsigned int
+           driving_tool; ///< index of the tool whose travel is the stroke; no_tool without tools
+    double characteristic_speed; ///< V [mm/s], largest speed of a tool or boundary at the start
+    double characteristic_rate;  ///< V/H [1/s]
+    double size;                 ///< largest extent of the workpiece [mm]
+
+    /// Force per volume (r, z) [N/mm^3] at a point of the current configuration; empty: none.
+    std::function<Vector2(const Point &)> body_force;
+
+    /// Travel of the driving tool [mm] at a time [s].
+    double stroke(double time) const;
+
+    /// Time [s] at which the run ends.
+    double end_time() const
+    {
+      return end_time_;
+    }
+
+  private:
+    double end_time_;
+  };
+} // namespace axiforge::scene

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <axiforge/scene/scene.h>
+#include <axiforge/state/state.h>
+
+namespace axiforge::solvers
+{
+  /**
+   * Local axes of a boundary node and what is prescribed along them in the next Newton iteration.
+   * The increment of velocity is dv = a * axis[0] + b * axis[1].
+   */
+  struct NodeFrame
+  {
+    unsigned int           node;
+    std::array<Vector2, 2> axis;
+    bool                   fixed[2];
+    double                 increment[2]; ///< of the fixed components [mm/s]
+  };
+
+  /**
+   * The primal-dual active set of the contact between the workpiece's boundary nodes and the tools,
+   * inside one step. The condition is non-penetration at the END of the step,
+   * gap(x_n + dt v, t_{n+1}) >= 0, against the nodal reaction; see doc/theory.md, section 5.
+   *
+   * All decisions use nodal values that every rank holds alike, so the ranks that share a node
+   * agree.
+   */
+  class ContactSet
+  {
+  public:
+    /// Starts from the contacts of the state.
+    ContactSet(const scene::Scene &scene, const State &state);
+
+    /**
+     * Finds gaps and normals of the nodes at the end of the step. Nodes that penetrate are caught.
+     * @param velocity of the current iterate, with its ghosts [mm/s]
+     * @return number of locally owned nodes whose set changed
+     */
+    unsigned int locate(const Field &velocity, double time_step);
+
+    /**
+     * Sets the reactions from the nodal forces that the contact has to supply, and releases nodes
+     * that are under tension.
+     * @param force residual of the nodes without contact (internal + friction - external), ghosts
+     * up to date [N]
+     * @param scale sum of the magnitudes of the cells' forces, same layout [N]
+     * @param may_release false: reactions only (the iterate is too far from equilibrium)
+     * @return number of locally owned nodes released
+     */
+    unsigned int update_reactions(const Field &force, const Field &scale, bool may_release);
+
+    /// Axes and prescribed increments of all boundary nodes, for the present set.
+    void make_frames(const Field &velocity, double time_step, std::vector<NodeFrame> &frames) const;
+
+    /// How a boundary edge touches: the tool of its middle, and which part of the edge.
+    struct EdgeContact
+    {
+      unsigned int           tool = no_tool; ///< no_tool: the edge does not touch
+      std::array<bool, 3>    touches{};
+      std::array<Vector2, 3> normal;    ///< of the face that the middle is on
+      std::array<double, 3>  weight{};  ///< nodal (Simpson) weights, 1 in all on a whole edge
+      std::array<double, 3>  measure{}; ///< area that each node stands for [mm^2]
+    };
+
+    /// @param position nodes in the configuration that the areas are taken in [mm]
+    EdgeContact edge(unsigned int e, const Field &position) const;
+
+    /// Sets the contact pressure of the nodes from their reactions. Collective.
+    void set_pressures(const Field &position);
+
+    /// Area that a node stands for in all its touching edges [mm^2], of the last set_pressures().
+    double node_area(const unsigned int node) const
+    {
+      return area.local_element(2 * node);
+    }
+
+    /// Velocity of a tool during the step [mm/s].
+    Vector2 tool_velocity(unsigned int tool) const
+    {
+      return tool_velocities[tool];
+    }
+
+    /// Unit tangent of a normal; to the right of a normal that points down.
+    static Vector2 tangent(const Vector2 &normal)
+    {
+      return Vector2({ -normal[1], normal[0] });
+    }
+
+    /// Prescribed velocity or pressure condition of a boundary id; no_tool: none.
+    unsigned int condition_of(dealii::types::boundary_id id) const;
+
+    std::vector<NodeContact> nodes; ///< per boundary node of the state's tables
+
+  private:
+    bool in_concave_pair(unsigned int b, unsigned int tool, unsigned int face) const;
+
+    const scene::Scene       &scene;
+    const State              &state;
+    std::vector<unsigned int> n_releases; ///< of each boundary node in this step
+    std::vector<Vector2>      tool_velocities;
+    std::vector<unsigned int> condition; ///< per boundary id
+    Field                     area;      ///< that the nodes stand for [mm^2]
+    double                    reach;     ///< how far an active node is looked for [mm]
+  };
+} // namespace axiforge::solvers

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <axiforge/scene/scene.h>
+#include <axiforge/solvers/contact_set.h>
+#include <axiforge/solvers/flow_cell.h>
+#include <axiforge/solvers/interface_friction.h>
+#include <axiforge/solvers/linear_system.h>
+#include <axiforge/state/state.h>
+#include <axiforge/state/step_record.h>
+
+namespace axiforge::solvers
+{
+  /// The velocity field of a step and all that goes into the state when the step is accepted.
+  struct FlowResult
+  {
+    bool        converged = false;
+    std::string failure; ///< why not: one clause, with the place where there is one
+
+    Field                     velocity; ///< with ghosts [mm/s]
+    std::vector<CellHistory>  cell_history;
+    std::vector<NodeContact>  contacts;
+    std::vector<EdgeFriction> edge_friction; ///< empty: no friction law keeps anything
+
+    StepRecord record; ///< without the figures of the end of the step
+  };
+
+  /**
+   * Solves the flow problem of one time step: velocity and pressure in the configuration at the
+   * middle of the step (or its start, for the explicit scheme), with contact at its end.
+   * Primal-dual Newton iterations with the pressure condensed cell by cell; doc/theory.md, sections
+   * 3 to 6.
+   *
+   * Reads the state and never writes it. Holds what depends on the mesh alone; make a new one when
+   * the mesh changes.
+   */
+  class FlowSolver
+  {
+  public:
+    FlowSolver(const scene::Scene &scene, const State &state);
+
+    /// Velocity of the step from state.time to state.time + time_step. Collective.
+    FlowResult solve(double time_step);
+
+    const LinearSystem &linear_system() const
+    {
+      return *system;
+    }
+
+  private:
+    /// What a cell keeps between assembly and the recovery of its condensed unknowns.
+    struct CellRecovery
+    {
+      double         interior_gain[2][n_outer]; ///< -K_ii^-1 K_io
+      double         interior_step[2];          ///< -K_ii^-1 r_i
+      CellDivergence divergence;
+      double         flux[n_pressure]; ///< G v
+    };
+
+    /// Nodes of a cell that carry a hanging-node constraint, expressed in the system nodes.
+    struct HangingCell
+    {
+      unsigned int        n_system;
+      std::vector<double> weights; ///< 8 x n_system
+    };
+
+    struct Norms
+    {
+      double residual, divergence, constraint;
+    };
+
+    void make_system();
+    void load_cell(const Field &field, unsigned int cell, CellDofs &values) const;
+    bool evaluate_cells(bool move_dual);
+    void
+    evaluate_point(FlowPoint &point, const double (&rate)[4], double strain, bool move_dual) const;
+    void  add_external_forces();
+    void  add_body_force();
+    void  add_boundary_pressure();
+    void  add_friction_forces();
+    Norms measure() const;
+    void  assemble();
+    void  apply_frames(const std::vector<unsigned int> &nodes,
+                       std::vector<double>             &matrix,
+                       std::vector<double>             &rhs) const;
+    bool  solve_increment();
+    void  recover();
+    void  scatter_force(unsigned int cell, const CellDofs &force, Field &target) const;
+    void  finish(FlowResult &result);
+    void  record_tools(StepRecord &record);
+    void  record_powers(StepRecord &record);
+    void  record_boundaries(StepRecord &record);
+
+    const scene::Scene &scene;
+    const State        &state;
+    double              theta;  ///< 1/2 or 0: where in the step the equations are written
+    double              lambda; ///< penalty [MPa s]
+
+    std::unique_ptr<LinearSystem>          system;
+    SystemNodes                            system_nodes;
+    std::vector<int>                       hanging_cell; ///< per cell: row in hanging, -1 none
+    std::vector<HangingCell>               hanging;
+    bool                                   any_hanging;
+    std::vector<std::vector<unsigned int>> cell_edges; ///< boundary edges of each cell
+
+    // Of the present step:
+    double                             time_step;
+    std::unique_ptr<ContactSet>        contact;
+    std::unique_ptr<InterfaceFriction> friction;
+    Field                              velocity, increment, position; ///< position: at theta
+    Field                              internal, external, friction_force, scale;
+    std::vector<FlowPoint>             points;
+    std::vector<std::array<double, n_pressure>> pressure;
+    std::vector<CellRecovery>                   recovery;
+    std::vector<CellDofs>  cell_external; ///< empty: no pressure boundary and no body force
+    std::vector<NodeFrame> frames;
+    std::vector<int>       frame_of_node;
+    double                 divergence_square, rate_square; ///< of the last evaluation, all ranks
+    std::string            failure;
+    StepTimes              times;
+  };
+} // namespace axiforge::solvers

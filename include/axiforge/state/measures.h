@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <axiforge/state/state.h>
+
+namespace axiforge
+{
+  /// Sizes of the workpiece as it stands.
+  struct Measures
+  {
+    double volume;            ///< [mm^3], exact for the Q2 geometry
+    double largest_radius;    ///< [mm], on the Q2 edges of the surface, not only at nodes
+    double lowest, highest;   ///< z [mm]
+    double largest_strain;    ///< at the Gauss points
+    double smallest_jacobian; ///< det J over that of the mean of the cell, at Gauss points and
+                              ///< vertices
+    Point worst_place;        ///< centre of the cell that has it [mm]
+  };
+
+  /// Collective.
+  Measures measure(const State &state);
+} // namespace axiforge

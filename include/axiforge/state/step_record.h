@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace axiforge
+{
+  /// What a tool feels and leaves in a step.
+  struct ToolRecord
+  {
+    double force = 0; ///< axial, positive against the motion (or upwards on a tool at rest) [N]
+    double radial_force   = 0; ///< integral of the radial traction over the interface [N]
+    double contact_radius = 0; ///< largest radius that touches [mm]; 0: no contact
+    double neutral_radius =
+        std::numeric_limits<double>::quiet_NaN(); ///< where slip changes sign [mm]
+  };
+
+  /// Power that a prescribed boundary puts in, and the volume it displaces.
+  struct BoundaryRecord
+  {
+    double force    = 0; ///< axial, on the workpiece [N]
+    double power    = 0; ///< [mW]
+    double pressure = 0; ///< mean: power over the volume swept per time [MPa]
+  };
+
+  /// Seconds of the step's phases; wall time of this rank.
+  struct StepTimes
+  {
+    double residual = 0, assembly = 0, analyse = 0, factor = 0, solve = 0, contact = 0, total = 0;
+
+    void add(const StepTimes &other)
+    {
+      residual += other.residual;
+      assembly += other.assembly;
+      analyse += other.analyse;
+      factor += other.factor;
+      solve += other.solve;
+      contact += other.contact;
+      total += other.total;
+    }
+  };
+
+  /// The figures of one accepted step.
+  struct StepRecord
+  {
+    unsigned int step      = 0;
+    double       time      = 0; ///< at the end of the step [s]
+    double       time_step = 0; ///< [s]
+    double       stroke    = 0; ///< [mm]
+
+    std::vector<ToolRecord>     tools;
+    std::vector<BoundaryRecord> boundaries;
+
+    double volume = 0, relative_volume_change = 0;
+
+    // Power at the middle of the step [mW]; tools + boundaries + body = plastic + friction + volume
+    // + contact + residual
+    double power_tools = 0, power_boundaries = 0, power_plastic = 0, power_friction = 0;
+    double power_contact  = 0; ///< by nodes that move against the tool: only where nodes are caught
+    double power_volume   = 0; ///< of the pressure on the remaining divergence
+    double power_residual = 0;
+
+    double largest_strain = 0, largest_strain_rate = 0;
+    double largest_radius = 0; ///< of the free and touching surface [mm]
+
+    unsigned int cells = 0, unknowns = 0, iterations = 0, set_changes = 0, repeats = 0;
+    double       residual = 0, divergence = 0;
+    StepTimes    times;
+  };
+} // namespace axiforge

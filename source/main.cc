@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <iostream>
+
+#include <CLI/CLI.hpp>
+#include <axiforge_revision.h>
+#include <dlfcn.h>
+
+#include <axiforge/base/errors.h>
+#include <axiforge/process/run.h>
+
+namespace
+{
+  constexpr int bad_input = 1, can_not_go_on = 2, other_failure = 3;
+
+  /// OpenBLAS takes all cores by default: too many for small fronts, and several ranks would fight.
+  void one_blas_thread()
+  {
+    if (std::getenv("OPENBLAS_NUM_THREADS"))
+      return;
+    using Setter = void (*)(int);
+    if (const auto set = reinterpret_cast<Setter>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads")))
+      set(1);
+  }
+
+
+  /// One message, from one rank; the others have met the same.
+  int report(const std::string &message, const int status)
+  {
+    if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+      std::cerr << "axiforge: " << message << std::endl;
+    return status;
+  }
+} // namespace
+
+
+int main(int argc, char **argv)
+{
+  axiforge::process::RunOptions options;
+  options.version  = AXIFORGE_VERSION;
+  options.revision = AXIFORGE_REVISION;
+  for (int i = 0; i < argc; ++i)
+    options.command_line += (i ? " " : "") + std::string(argv[i]);
+
+  CLI::App app("axiforge: axisymmetric forging by the viscoplastic flow formulation");
+  app.add_option("FILE.prm", options.parameter_file, "The scene to run")->required();
+  app.add_option("--set", options.overrides,
+                 "Set an entry over the file: --set \"Section/Entry = value\"")
+      ->type_name("\"SECTION/ENTRY = VALUE\"")
+      ->allow_extra_args(false)
+      ->take_all();
+  app.add_option("--output", options.output_directory, "Folder of the results");
+  app.add_flag("--validate", options.validate,
+               "Read and check everything, meshes included; run nothing");
+  app.add_flag("--print-parameters", options.print_parameters,
+               "Print all entries with their values and texts");
+  app.add_flag("--quiet", options.quiet, "No progress lines");
+  app.set_version_flag("--version",
+                       "axiforge " + options.version + " (revision " + options.revision + ")");
+  app.footer(
+      "Exit status: 0 done, 1 bad input, 2 the computation could not go on, 3 anything else.");
+  try
+    {
+      app.parse(argc, argv);
+    }
+  catch (const CLI::ParseError &error)
+    {
+      return app.exit(error) == 0 ? 0 : bad_input;
+    }
+
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  one_blas_thread();
+  try
+    {
+      axiforge::process::run(options, MPI_COMM_WORLD);
+      return 0;
+    }
+  catch (const axiforge::InputError &error)
+    {
+      return report(error.what(), bad_input);
+    }
+  catch (const axiforge::ComputationError &error)
+    {
+      return report(error.what(), can_not_go_on);
+    }
+  catch (const std::exception &error)
+    {
+      return report(error.what(), other_failure);
+    }
+}

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <deal.II/distributed/solution_transfer.h>
+
+#include <axiforge/base/errors.h>
+#include <axiforge/meshing/initial_state.h>
+#include <axiforge/state/measures.h>
+
+namespace axiforge::meshing
+{
+  scene::WorkpieceOutline outline_of(const WorkpieceMesh &mesh)
+  {
+    scene::WorkpieceOutline outline;
+    outline.lower = outline.upper = mesh.vertices.front();
+    std::map<std::pair<unsigned int, unsigned int>, Point> middle;
+    constexpr unsigned int edges[4][2] = { { 0, 2 }, { 1, 3 }, { 0, 1 }, { 2, 3 } };
+    for (unsigned int cell = 0; cell < mesh.cells.size(); ++cell)
+      {
+        for (const Point &x : mesh.cell_nodes[cell])
+          for (unsigned int c = 0; c < 2; ++c)
+            {
+              outline.lower[c] = std::min(outline.lower[c], x[c]);
+              outline.upper[c] = std::max(outline.upper[c], x[c]);
+            }
+        for (unsigned int side = 0; side < 4; ++side)
+          {
+            const unsigned int a                       = mesh.cells[cell][edges[side][0]],
+                               b                       = mesh.cells[cell][edges[side][1]];
+            middle[{ std::min(a, b), std::max(a, b) }] = mesh.cell_nodes[cell][4 + side];
+          }
+      }
+    const auto id_of = [&](const std::string &name) {
+      const auto found = mesh.boundary_ids.find(name);
+      return found == mesh.boundary_ids.end() ? dealii::numbers::invalid_boundary_id
+                                              : found->second;
+    };
+    std::set<unsigned int> vertices;
+    for (const auto &edge : mesh.boundary_edges)
+      if (edge.id != id_of("axis") && edge.id != id_of("symmetry"))
+        {
+          vertices.insert(edge.v0);
+          vertices.insert(edge.v1);
+          outline.boundary_points.push_back(
+              middle.at({ std::min(edge.v0, edge.v1), std::max(edge.v0, edge.v1) }));
+        }
+    for (const unsigned int v : vertices)
+      outline.boundary_points.push_back(mesh.vertices[v]);
+    for (const auto &entry : mesh.boundary_ids)
+      if (entry.first != "axis" && entry.first != "symmetry" && entry.first != "surface")
+        outline.boundary_names.push_back(entry.first);
+    return outline;
+  }
+
+
+  void refine_at_start(State &state, const std::function<bool(const Point &)> &choose)
+  {
+    std::vector<dealii::types::global_dof_index> dofs(state.flow_element.n_dofs_per_cell());
+    for (const auto &cell : state.flow_dofs.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          cell->get_dof_indices(dofs);
+          if (choose(Point(state.position(dofs[16]), state.position(dofs[17]))))
+            cell->set_refine_flag();
+        }
+    state.triangulation.prepare_coarsening_and_refinement();
+    dealii::parallel::distributed::SolutionTransfer<2, Field> transfer(state.flow_dofs);
+    state.position.update_ghost_values();
+    transfer.prepare_for_coarsening_and_refinement(state.position);
+    state.triangulation.execute_coarsening_and_refinement();
+
+    state.setup_dofs();
+    state.position.zero_out_ghost_values();
+    transfer.interpolate(state.position);
+    state.position.update_ghost_values();
+    state.setup_tables();
+  }
+
+
+  void
+  make_initial_state(const WorkpieceMesh &mesh, const unsigned int refinement_levels, State &state)
+  {
+    create_triangulation(mesh, state.triangulation);
+    state.boundary_ids = mesh.boundary_ids;
+    state.setup_dofs();
+    interpolate_geometry(mesh, state.flow_dofs, state.position);
+    state.setup_tables();
+    for (unsigned int level = 0; level < refinement_levels; ++level)
+      refine_at_start(state, [](const Point &) { return true; });
+
+    const auto outline = outline_of(mesh);
+    state.size = std::max(outline.upper[0] - outline.lower[0], outline.upper[1] - outline.lower[1]);
+    state.initial_volume = measure(state).volume;
+  }
+} // namespace axiforge::meshing

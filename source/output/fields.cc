@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <functional>
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/fe/mapping_fe_field.h>
+#include <deal.II/numerics/data_out.h>
+
+#include <axiforge/output/results.h>
+
+namespace axiforge::output
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /// Values of the polynomial through the 3 x 3 Gauss points at the nodes of FE_Q(2).
+    FullMatrix<double> points_to_nodes(const State &state)
+    {
+      FullMatrix<double> matrix(9, 9);
+      const FE_Q<2>      nodes(2);
+      for (unsigned int a = 0; a < 9; ++a)
+        for (unsigned int q = 0; q < 9; ++q)
+          matrix(a, q) = state.history_element.shape_value(q, nodes.unit_support_point(a));
+      return matrix;
+    }
+
+
+    /**
+     * Two quantities of the Gauss points as continuous nodal fields in the two components of a
+     * Field: continued within each cell, kept in the range of the cell, averaged where cells meet.
+     */
+    Field
+    recover(const State                                                                   &state,
+            const std::function<std::array<double, 2>(unsigned int cell, unsigned int q)> &value)
+    {
+      const FullMatrix<double> continuation = points_to_nodes(state);
+      Field                    sum(state.velocity), count(state.velocity);
+      sum   = 0;
+      count = 0;
+      for (unsigned int cell = 0; cell < state.tables.cells.size(); ++cell)
+        {
+          double at[2][9], low[2] = { 1e300, 1e300 }, high[2] = { -1e300, -1e300 };
+          for (unsigned int q = 0; q < 9; ++q)
+            {
+              const std::array<double, 2> v = value(cell, q);
+              for (unsigned int c = 0; c < 2; ++c)
+                {
+                  at[c][q] = v[c];
+                  low[c]   = std::min(low[c], v[c]);
+                  high[c]  = std::max(high[c], v[c]);
+                }
+            }
+          for (unsigned int a = 0; a < 9; ++a)
+            for (unsigned int c = 0; c < 2; ++c)
+              {
+                double node = 0;
+                for (unsigned int q = 0; q < 9; ++q)
+                  node += continuation(a, q) * at[c][q];
+                const unsigned int i = 2 * state.tables.cells[cell][a] + c;
+                sum.local_element(i) += std::clamp(node, low[c], high[c]);
+                count.local_element(i) += 1;
+              }
+        }
+      sum.compress(VectorOperation::add);
+      count.compress(VectorOperation::add);
+      for (unsigned int i = 0; i < sum.locally_owned_size(); ++i)
+        sum.local_element(i) /= count.local_element(i);
+      sum.zero_out_ghost_values();
+      state.hanging_nodes.distribute(sum);
+      sum.update_ghost_values();
+      return sum;
+    }
+  } // namespace
+
+
+  void write_vtu(const State &state, const std::string &path)
+  {
+    const auto &history = state.cell_history;
+
+    Field contact(state.velocity);
+    contact = 0;
+    for (unsigned int b = 0; b < state.contacts.size(); ++b)
+      if (const BoundaryNode &node = state.tables.boundary_nodes[b];
+          node.owned && state.contacts[b].active())
+        {
+          contact.local_element(2 * node.node)     = state.contacts[b].pressure;
+          contact.local_element(2 * node.node + 1) = state.contacts[b].traction;
+        }
+    contact.update_ghost_values();
+
+    const Field strain   = recover(state, [&](const unsigned int cell, const unsigned int q) {
+      return std::array<double, 2>{ { state.strain.local_element(
+                                            state.tables.first_strain_dof[cell] + q),
+                                      history[cell].strain_rate[q] } };
+    });
+    const Field stress   = recover(state, [&](const unsigned int cell, const unsigned int q) {
+      const auto  &S = history[cell].stress[q];
+      const double effective =
+          std::sqrt(1.5 * (S[0] * S[0] + S[1] * S[1] + S[2] * S[2] + 2 * S[3] * S[3]));
+      return std::array<double, 2>{ { effective, history[cell].mean_stress[q] } };
+    });
+    const Field normal   = recover(state, [&](const unsigned int cell, const unsigned int q) {
+      return std::array<double, 2>{ { history[cell].stress[q][0] + history[cell].mean_stress[q],
+                                      history[cell].stress[q][1] + history[cell].mean_stress[q] } };
+    });
+    const Field other    = recover(state, [&](const unsigned int cell, const unsigned int q) {
+      return std::array<double, 2>{ { history[cell].stress[q][2] + history[cell].mean_stress[q],
+                                      history[cell].stress[q][3] } };
+    });
+    const Field pressure = recover(state, [&](const unsigned int cell, const unsigned int q) {
+      return std::array<double, 2>{ { -history[cell].mean_stress[q],
+                                      history[cell].flow_stress[q] } };
+    });
+
+    using Interpretation = DataComponentInterpretation::DataComponentInterpretation;
+    const std::vector<Interpretation> vector(
+        2, DataComponentInterpretation::component_is_part_of_vector);
+    const std::vector<Interpretation> scalars(2, DataComponentInterpretation::component_is_scalar);
+
+    DataOut<2>            out;
+    DataOutBase::VtkFlags flags;
+    flags.write_higher_order_cells = true;
+    flags.time                     = state.time;
+    flags.cycle                    = state.step;
+    out.set_flags(flags);
+    const auto add = [&](const Field &field, const std::string &first, const std::string &second) {
+      out.add_data_vector(state.flow_dofs, field, std::vector<std::string>{ first, second },
+                          scalars);
+    };
+    state.velocity.update_ghost_values();
+    out.add_data_vector(state.flow_dofs, state.velocity, std::vector<std::string>(2, "velocity"),
+                        vector);
+    add(strain, "strain", "strain_rate");
+    add(stress, "effective_stress", "mean_stress");
+    add(normal, "stress_rr", "stress_zz");
+    add(other, "stress_tt", "stress_rz");
+    add(pressure, "pressure", "flow_stress");
+    add(contact, "contact_pressure", "friction_traction");
+
+    const MappingFEField<2, 2, Field> mapping(state.flow_dofs, state.position);
+    out.build_patches(mapping, 2, DataOut<2>::curved_inner_cells);
+
+    // Under another name first: a run that is killed leaves no half-written file.
+    const std::string temporary = path + ".part";
+    out.write_vtu_in_parallel(temporary, state.communicator);
+    if (Utilities::MPI::this_mpi_process(state.communicator) == 0)
+      std::rename(temporary.c_str(), path.c_str());
+    MPI_Barrier(state.communicator);
+  }
+
+
+  void write_tools(const scene::Scene &scene, const double time, const std::string &path)
+  {
+    std::string  points, connectivity, offsets, indices;
+    unsigned int n_points = 0, n_lines = 0;
+    for (unsigned int tool = 0; tool < scene.tools.size(); ++tool)
+      {
+        const Vector2 shift = scene.tools[tool].motion.displacement(time);
+        for (const auto &line : scene.tools[tool].profile.sample(1e-4 * scene.size))
+          {
+            for (const Point &x : line)
+              {
+                points += fmt::format("{:.9g} {:.9g} 0\n", x[0] + shift[0], x[1] + shift[1]);
+                connectivity += fmt::format("{} ", n_points++);
+              }
+            offsets += fmt::format("{} ", n_points);
+            indices += fmt::format("{} ", tool);
+            ++n_lines;
+          }
+      }
+    std::string types;
+    for (unsigned int i = 0; i < n_lines; ++i)
+      types += "4 "; // VTK_POLY_LINE
+    write_file_atomically(
+        path,
+        fmt::format(
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" "
+            "version=\"0.1\">\n<UnstructuredGrid>\n"
+            "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n"
+            "<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" "
+            "format=\"ascii\">\n{}</DataArray></Points>\n"
+            "<Cells>\n<DataArray type=\"Int32\" Name=\"connectivity\" "
+            "format=\"ascii\">{}</DataArray>\n"
+            "<DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">{}</DataArray>\n"
+            "<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">{}</DataArray>\n</Cells>\n"
+            "<CellData Scalars=\"tool\"><DataArray type=\"Int32\" Name=\"tool\" "
+            "format=\"ascii\">{}</DataArray>"
+            "</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n",
+            n_points, n_lines, points, connectivity, offsets, types, indices));
+  }
+} // namespace axiforge::output

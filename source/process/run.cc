@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <filesystem>
+#include <iostream>
+
+#include <deal.II/base/revision.h>
+#include <deal.II/base/timer.h>
+
+#include <axiforge/base/errors.h>
+#include <axiforge/meshing/initial_state.h>
+#include <axiforge/output/results.h>
+#include <axiforge/process/run.h>
+#include <axiforge/process/step.h>
+
+namespace axiforge::process
+{
+  namespace
+  {
+    std::string duration(const double seconds)
+    {
+      const int whole = static_cast<int>(std::lround(seconds));
+      return seconds < 60     ? fmt::format("{:.1f} s", seconds)
+             : seconds < 3600 ? fmt::format("{}:{:02} min", whole / 60, whole % 60)
+                              : fmt::format("{}:{:02} h", whole / 3600, whole / 60 % 60);
+    }
+
+
+    /// Lines for a log as well as for a terminal: one per step, on the first rank.
+    class Progress
+    {
+    public:
+      Progress(const scene::Scene &scene, const bool quiet)
+          : scene(scene)
+          , quiet(quiet)
+      {
+      }
+
+      void start(const State &state) const
+      {
+        if (quiet)
+          return;
+        if (!scene.title.empty())
+          std::cout << scene.title << '\n';
+        std::cout << fmt::format(
+                         "{} cells, {} unknowns, {} tools, end at {:.6g} s, stroke {:.6g} mm\n",
+                         state.tables.n_global_cells, state.n_unknowns(), scene.tools.size(),
+                         scene.end_time(), scene.stroke(scene.end_time()))
+                  << std::flush;
+      }
+
+      void step(const StepRecord &record) const
+      {
+        if (quiet)
+          return;
+        std::string forces;
+        for (unsigned int i = 0; i < record.tools.size(); ++i)
+          forces += fmt::format("  {} {:.6g} N", scene.tools[i].name, record.tools[i].force);
+        for (unsigned int i = 0; i < record.boundaries.size(); ++i)
+          if (scene.boundaries[i].is_velocity)
+            forces += fmt::format("  {} {:.6g} MPa", scene.boundaries[i].name,
+                                  record.boundaries[i].pressure);
+        const double left = timer.wall_time() / record.time * (scene.end_time() - record.time);
+        std::cout << fmt::format(
+                         "step {:4}  t {:.5g} s  stroke {:.5g} mm{}  iterations {}  cells {}  left "
+                         "{}{}\n",
+                         record.step, record.time, record.stroke, forces, record.iterations,
+                         record.cells, duration(left),
+                         record.repeats ? fmt::format("  (repeated {} times)", record.repeats) : "")
+                  << std::flush;
+      }
+
+      void end(const State       &state,
+               const StepTimes   &sum,
+               const double       analyse,
+               const std::string &folder) const
+      {
+        if (quiet)
+          return;
+        const double total = timer.wall_time();
+        std::cout << fmt::format(
+                         "{} steps in {} ({:.1f} ms per step): cells {:.0f} %, contact and "
+                         "friction {:.0f} %, "
+                         "factorisation {:.0f} %, solve {:.0f} %, analysis {:.3f} s\n",
+                         state.step, duration(total), 1e3 * total / std::max(1u, state.step),
+                         100 * (sum.assembly + sum.residual) / total, 100 * sum.contact / total,
+                         100 * sum.factor / total, 100 * sum.solve / total, analyse)
+                  << "Results: " << folder << '\n'
+                  << std::flush;
+      }
+
+    private:
+      const scene::Scene &scene;
+      bool                quiet;
+      dealii::Timer       timer;
+    };
+
+
+    std::string versions(const RunOptions &options, const MPI_Comm communicator)
+    {
+      return fmt::format(
+          "axiforge {} (revision {})\ndeal.II {} ({})\n{} ranks\ncommand: {}\n", options.version,
+          options.revision, DEAL_II_PACKAGE_VERSION, DEAL_II_GIT_SHORTREV,
+          dealii::Utilities::MPI::n_mpi_processes(communicator), options.command_line);
+    }
+
+
+    void warn(const scene::Scene &scene, const bool quiet)
+    {
+      if (quiet)
+        return;
+      const double           rate  = scene.characteristic_rate;
+      const laws::FlowStress sigma = scene.material.flow_stress(0.1, rate);
+      for (const scene::Tool &tool : scene.tools)
+        if (tool.friction.kind() == laws::FrictionKind::smm &&
+            tool.friction.workpiece_viscosity() && sigma.d_strain_rate * rate < 0.02 * sigma.value)
+          std::cout << "Note: tool \"" << tool.name
+                    << "\" has an SMM layer with the viscosity of the workpiece, and the "
+                       "material hardly depends on the strain rate: the lagged viscosity often "
+                       "does not converge "
+                       "there. \"Layer viscosity = layer\" does.\n";
+    }
+  } // namespace
+
+
+  void run(const RunOptions &options, const MPI_Comm communicator)
+  {
+    const bool          first = dealii::Utilities::MPI::this_mpi_process(communicator) == 0;
+    const bool          quiet = options.quiet || !first;
+    const ParameterFile file(options.parameter_file, options.overrides);
+
+    const scene::SceneParameters parameters(file);
+    if (options.print_parameters)
+      {
+        if (first)
+          std::cout << parameters.print();
+        return;
+      }
+    const meshing::WorkpieceMesh mesh =
+        meshing::read_workpiece(parameters.workpiece, "Workpiece", parameters.directory);
+    const scene::Scene scene(parameters, meshing::outline_of(mesh));
+    if (scene.flow.linear_solver == "cholmod" &&
+        dealii::Utilities::MPI::n_mpi_processes(communicator) > 1)
+      throw InputError::entry(
+          "Flow solver/Linear solver", "cholmod", "CHOLMOD works on one rank only",
+          "'automatic' or 'mumps' on several ranks", "Or start the program without mpirun");
+
+    State state(communicator);
+    meshing::make_initial_state(mesh, parameters.workpiece.refinement_levels, state);
+    if (options.validate)
+      {
+        if (first)
+          std::cout << fmt::format("{} is sound: {} cells, {} unknowns, {} tools.\n", file.path(),
+                                   state.tables.n_global_cells, state.n_unknowns(),
+                                   scene.tools.size());
+        return;
+      }
+    warn(scene, quiet);
+
+    std::string folder =
+        options.output_directory.empty() ? scene.output.directory : options.output_directory;
+    if (folder.empty())
+      folder = "results/" + std::filesystem::path(file.path()).stem().string();
+
+    const Progress  progress(scene, quiet);
+    output::Results results(
+        scene, state, folder,
+        { file.resolved_text(), parameters.print(), versions(options, communicator) });
+    solvers::FlowSolver solver(scene, state);
+    StepRecord          record;
+    StepTimes           sum;
+    progress.start(state);
+    try
+      {
+        while (state.time < scene.end_time() * (1 - 1e-12) && state.step < scene.time.most_steps)
+          {
+            const double time_step = choose_step_size(scene, state, record);
+            record                 = advance(scene, state, solver, time_step);
+            results.write(state, record);
+            progress.step(record);
+            sum.add(record.times);
+          }
+      }
+    catch (const ComputationError &)
+      {
+        results.write_fields(state); // what there is stays, up to the last good step
+        throw;
+      }
+    results.write_fields(state);
+    progress.end(state, sum, solver.linear_system().analyse_seconds, folder);
+  }
+} // namespace axiforge::process

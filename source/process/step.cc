@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <deal.II/base/mpi.h>
+
+#include <axiforge/base/errors.h>
+#include <axiforge/process/step.h>
+
+namespace axiforge::process
+{
+  namespace MPI = dealii::Utilities::MPI;
+
+  namespace
+  {
+    /// Time in which the nodes of some cell move against each other by its own size [s].
+    double shortest_distortion_time(const State &state)
+    {
+      double largest_rate = 0;
+      for (const auto &nodes : state.tables.cells)
+        {
+          const auto value = [&](const Field &field, const unsigned int a) {
+            return Vector2(
+                { field.local_element(2 * nodes[a]), field.local_element(2 * nodes[a] + 1) });
+          };
+          const unsigned int edges[4][2] = { { 0, 1 }, { 2, 3 }, { 0, 2 }, { 1, 3 } };
+          for (const auto &edge : edges)
+            {
+              const double length =
+                  (value(state.position, edge[1]) - value(state.position, edge[0])).norm();
+              const double speed =
+                  (value(state.velocity, edge[1]) - value(state.velocity, edge[0])).norm();
+              largest_rate = std::max(largest_rate, speed / length);
+            }
+        }
+      largest_rate = MPI::max(largest_rate, state.communicator);
+      return largest_rate > 0 ? 1 / largest_rate : std::numeric_limits<double>::infinity();
+    }
+
+
+    /// Speed [mm/s] that decides the reduction: of the fastest tool now, or that of the scene.
+    double fastest(const scene::Scene &scene, const double time)
+    {
+      double speed = 0;
+      for (const scene::Tool &tool : scene.tools)
+        speed = std::max(speed, tool.motion.velocity(time).norm());
+      return speed > 0 ? speed : scene.characteristic_speed;
+    }
+
+
+    void accept(State &state, solvers::FlowResult &result, const double time_step)
+    {
+      const std::size_t n = state.position.locally_owned_size();
+      for (std::size_t i = 0; i < n; ++i)
+        state.position.local_element(i) += time_step * result.velocity.local_element(i);
+      state.position.update_ghost_values();
+      for (unsigned int cell = 0; cell < state.tables.cells.size(); ++cell)
+        for (unsigned int q = 0; q < 9; ++q)
+          state.strain.local_element(state.tables.first_strain_dof[cell] + q) +=
+              time_step * result.cell_history[cell].strain_rate[q];
+      state.velocity.swap(result.velocity);
+      state.cell_history.swap(result.cell_history);
+      state.contacts.swap(result.contacts);
+      if (!result.edge_friction.empty())
+        state.edge_friction.swap(result.edge_friction);
+      state.earlier_time_step = state.last_time_step;
+      state.last_time_step    = time_step;
+      state.time += time_step;
+      ++state.step;
+    }
+  } // namespace
+
+
+  double choose_step_size(const scene::Scene &scene, const State &state, const StepRecord &last)
+  {
+    const scene::TimeParameters &limits = scene.time;
+    double                       end    = scene.end_time();
+    for (const scene::Tool &tool : scene.tools)
+      for (const double kink : tool.motion.kinks())
+        if (kink > state.time * (1 + 1e-12) + 1e-300)
+          end = std::min(end, kink);
+    const double left  = end - state.time;
+    const bool   given = limits.time_step > 0 || limits.stroke_per_step > 0;
+
+    double step = limits.time_step;
+    if (limits.stroke_per_step > 0)
+      {
+        const double speed = scene.tools[scene.driving_tool].motion.velocity(state.time).norm();
+        step               = speed > 0 ? limits.stroke_per_step / speed : left;
+      }
+    if (!given)
+      {
+        const Measures size = measure(state);
+        step = limits.largest_reduction * (size.highest - size.lowest) / fastest(scene, state.time);
+        if (state.step > 0)
+          {
+            if (last.largest_strain_rate > 0)
+              step = std::min(step, limits.largest_strain_increment / last.largest_strain_rate);
+            step = std::min(step, limits.largest_motion * shortest_distortion_time(state));
+          }
+      }
+    if (last.repeats > 0)
+      step = std::min(step, 1.5 * last.time_step);
+    // What is left is shared out evenly, so that the last step is no splinter.
+    return left / std::max(1., std::ceil(left / step - 1e-6));
+  }
+
+
+  StepRecord
+  advance(const scene::Scene &scene, State &state, solvers::FlowSolver &solver, const double wanted)
+  {
+    double       time_step = wanted;
+    unsigned int repeats = 0, iterations = 0;
+    for (;;)
+      {
+        solvers::FlowResult result = solver.solve(time_step);
+        iterations += result.record.iterations;
+        if (result.converged)
+          {
+            // Try the step on a copy of the position: a cell that turns over takes it back.
+            const Field before = state.position;
+            for (std::size_t i = 0; i < state.position.locally_owned_size(); ++i)
+              state.position.local_element(i) += time_step * result.velocity.local_element(i);
+            state.position.update_ghost_values();
+            const Measures size = measure(state);
+            state.position      = before;
+            state.position.update_ghost_values();
+            if (size.smallest_jacobian > 0)
+              {
+                StepRecord record = result.record;
+                accept(state, result, time_step);
+                record.step                   = state.step;
+                record.time                   = state.time;
+                record.time_step              = time_step;
+                record.stroke                 = scene.stroke(state.time);
+                record.volume                 = size.volume;
+                record.relative_volume_change = size.volume / state.initial_volume - 1;
+                record.largest_radius         = size.largest_radius;
+                record.largest_strain         = measure(state).largest_strain;
+                record.cells                  = state.tables.n_global_cells;
+                record.unknowns               = state.n_unknowns();
+                record.repeats                = repeats;
+                record.iterations             = iterations;
+                return record;
+              }
+            result.failure = fmt::format("a cell near r = {:.4g} mm, z = {:.4g} mm turns over",
+                                         size.worst_place[0], size.worst_place[1]);
+          }
+        ++repeats;
+        time_step /= 2;
+        if (time_step < scene.time.smallest_step * wanted || repeats > 40)
+          throw ComputationError(fmt::format(
+              "The run can't go on at time {:.6g} s, stroke {:.6g} mm, step {}: {}. The step was "
+              "repeated {} "
+              "times, down to {:.3g} s. If a cell turns over, the mesh is used up there: take a "
+              "finer or a "
+              "graded mesh, less friction or a more rate-sensitive material; if the iterations do "
+              "not "
+              "converge, raise \"Flow solver/Most iterations\" or \"Flow solver/Regularisation\".",
+              state.time, scene.stroke(state.time), state.step + 1, result.failure, repeats,
+              2 * time_step));
+      }
+  }
+} // namespace axiforge::process

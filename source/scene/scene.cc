@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <limits>
+
+#include <deal.II/base/function_parser.h>
+
+#include <axiforge/base/errors.h>
+#include <axiforge/scene/scene.h>
+
+namespace axiforge::scene
+{
+  namespace
+  {
+    constexpr unsigned int no_tool = static_cast<unsigned int>(-1);
+
+    /// An expression in r, z and t as a function; empty for 'free'.
+    std::function<double(const Point &, double)> parse_expression(const std::string &entry,
+                                                                  const std::string &text)
+    {
+      if (text == "free")
+        return {};
+      auto function = std::make_shared<dealii::FunctionParser<2>>(1);
+      try
+        {
+          function->initialize("r,z,t", text, { { "pi", M_PI } }, true);
+          function->value(Point(1, 1)); // muparser speaks up at the first evaluation
+        }
+      catch (const std::exception &)
+        {
+          throw InputError::entry(entry, text, "this is not an expression in r, z and t",
+                                  "'free', numbers, + - * / ^, sqrt, exp, log, sin, cos, pi",
+                                  "For example \"0.5 * r / (r^2 + z^2)^1.5\"");
+        }
+      return [function](const Point &x, const double time) {
+        function->set_time(time);
+        return function->value(x);
+      };
+    }
+
+
+    std::string list(const std::vector<std::string> &names)
+    {
+      std::string text;
+      for (const std::string &name : names)
+        text += (text.empty() ? "" : ", ") + name;
+      return text.empty() ? "(none)" : text;
+    }
+
+
+    Tool make_tool(const ToolParameters   &parameters,
+                   const std::string      &directory,
+                   const WorkpieceOutline &outline,
+                   const double            characteristic_speed,
+                   const double            layer_length)
+    {
+      const std::string section = "Tool " + parameters.name;
+      Tool tool{ parameters.name, tools::read_profile(parameters.geometry, section, directory),
+                 tools::Motion(parameters.motion, section + "/Motion", directory),
+                 laws::Friction(parameters.friction, section + "/Friction", characteristic_speed,
+                                layer_length) };
+      tool.profile.orient(outline.boundary_points);
+
+      const double size = (outline.upper - outline.lower).norm();
+      for (const Point &x : outline.boundary_points)
+        {
+          std::array<tools::Contact, 2> contacts;
+          if (tool.profile.find(x, 0, contacts) > 0 && contacts[0].gap < -1e-6 * size)
+            throw InputError(fmt::format(
+                "Tool \"{0}\" (entry \"{1}/Geometry file\" = \"{2}\") starts inside the workpiece: "
+                "at r = "
+                "{3:.6g} mm, z = {4:.6g} mm it reaches {5:.3g} mm deep. Allowed: a tool that "
+                "touches the "
+                "workpiece or stands off. Move the tool's geometry back, or the workpiece.",
+                parameters.name, section, parameters.geometry.file, x[0], x[1], -contacts[0].gap));
+        }
+      return tool;
+    }
+  } // namespace
+
+
+  Scene::Scene(const SceneParameters &parameters, const WorkpieceOutline &outline)
+      : title(parameters.title)
+      , material(parameters.material, "Material", parameters.directory)
+      , process(parameters.process)
+      , time(parameters.time)
+      , flow(parameters.flow)
+      , output(parameters.output)
+      , driving_tool(no_tool)
+      , characteristic_speed(0)
+      , size(std::max(outline.upper[0] - outline.lower[0], outline.upper[1] - outline.lower[1]))
+      , end_time_(std::numeric_limits<double>::infinity())
+  {
+    const double height = outline.upper[1] - outline.lower[1];
+
+    for (const BoundaryParameters &boundary : parameters.boundaries)
+      {
+        const std::string section = "Boundary " + boundary.name;
+        if (std::find(outline.boundary_names.begin(), outline.boundary_names.end(),
+                      boundary.name) == outline.boundary_names.end())
+          throw InputError::entry(
+              "Boundaries", boundary.name, "the workpiece has no physical curve of this name",
+              list(outline.boundary_names),
+              "Name the curve in the geometry: Physical Curve(\"" + boundary.name + "\") = {...}");
+        BoundaryCondition condition;
+        condition.name        = boundary.name;
+        condition.is_velocity = boundary.type == "velocity";
+        if (condition.is_velocity)
+          {
+            condition.velocity[0] = parse_expression(section + "/Velocity r", boundary.velocity_r);
+            condition.velocity[1] = parse_expression(section + "/Velocity z", boundary.velocity_z);
+            if (!condition.velocity[0] && !condition.velocity[1])
+              throw InputError::entry(
+                  section + "/Velocity r", "free",
+                  "both components of a velocity condition are free",
+                  "an expression for at least one of them",
+                  "Take the boundary out of \"Boundaries\" if it is a free surface");
+            for (const Point &x : outline.boundary_points)
+              for (const auto &component : condition.velocity)
+                if (component)
+                  characteristic_speed = std::max(characteristic_speed, std::abs(component(x, 0)));
+          }
+        else
+          {
+            condition.pressure = parse_expression(section + "/Pressure", boundary.pressure);
+            if (!condition.pressure)
+              throw InputError::entry(section + "/Pressure", boundary.pressure,
+                                      "a pressure can't be free", "an expression in r, z and t");
+          }
+        boundaries.push_back(condition);
+      }
+
+    for (const ToolParameters &tool : parameters.tools)
+      {
+        const tools::Motion motion(tool.motion, "Tool " + tool.name + "/Motion",
+                                   parameters.directory);
+        const double        late  = std::isfinite(motion.end_time()) ? motion.end_time() : 1;
+        const double        early = motion.velocity(0).norm();
+        characteristic_speed      = std::max(
+                 characteristic_speed, early > 0 ? early : motion.displacement(late).norm() / late);
+      }
+    if (characteristic_speed == 0 && flow.reference_rate == 0)
+      throw InputError(
+          "Nothing moves: no tool has a velocity and no boundary has one. Allowed: at least "
+          "one tool with \"Motion/Type = constant velocity\" or \"table\", or a velocity "
+          "boundary. Give one, or \"Flow solver/Reference strain rate\" for a scene driven by "
+          "pressure alone.");
+    characteristic_rate =
+        flow.reference_rate > 0 ? flow.reference_rate : characteristic_speed / height;
+    if (characteristic_speed == 0)
+      characteristic_speed = characteristic_rate * height;
+
+    for (const ToolParameters &tool : parameters.tools)
+      {
+        tools.push_back(
+            make_tool(tool, parameters.directory, outline, characteristic_speed, 0.01 * height));
+        if (driving_tool == no_tool && tools.back().motion.moves() &&
+            (process.driving_tool.empty() || process.driving_tool == tool.name))
+          driving_tool = tools.size() - 1;
+      }
+    if (!process.driving_tool.empty() &&
+        (driving_tool == no_tool || tools[driving_tool].name != process.driving_tool))
+      {
+        std::vector<std::string> moving;
+        for (const Tool &tool : tools)
+          if (tool.motion.moves())
+            moving.push_back(tool.name);
+        throw InputError::entry("Process/Driving tool", process.driving_tool,
+                                "this is not a tool that moves", list(moving),
+                                "Name one of them, or leave the entry empty");
+      }
+
+    if (flow.iterated() && flow.penalty < 10 / flow.regularisation)
+      throw InputError::entry("Flow solver/Penalty", fmt::format("{}", flow.penalty),
+                              "too small for the iterated penalty to converge with \"Flow solver/"
+                              "Regularisation\" = " +
+                                  fmt::format("{}", flow.regularisation),
+                              fmt::format("at least {}", 10 / flow.regularisation),
+                              "Raise the penalty, or take \"Incompressibility = penalty\"");
+    if (time.stroke_per_step > 0 && time.time_step > 0)
+      throw InputError::entry("Time stepping/Stroke per step",
+                              fmt::format("{}", time.stroke_per_step),
+                              "the step is given twice, \"Time stepping/Time step\" = " +
+                                  fmt::format("{}", time.time_step) + " too",
+                              "one of the two", "Set the other to 0");
+    if (driving_tool == no_tool && (process.end_stroke > 0 || time.stroke_per_step > 0))
+      throw InputError::entry(
+          process.end_stroke > 0 ? "Process/End stroke" : "Time stepping/Stroke per step",
+          fmt::format("{}", process.end_stroke > 0 ? process.end_stroke : time.stroke_per_step),
+          "no tool moves, so there is no stroke", "0",
+          "Use \"Process/End time\" or \"Time stepping/Time step\"");
+    if (process.end_stroke == 0 && process.end_time == 0)
+      throw InputError::entry("Process/End stroke", "0", "the run has no end",
+                              "a positive end stroke [mm] or end time [s]",
+                              "Set \"Process/End stroke\" or \"Process/End time\"");
+
+    if (process.end_time > 0)
+      end_time_ = process.end_time;
+    if (process.end_stroke > 0)
+      {
+        const double last = std::min(end_time_, tools[driving_tool].motion.end_time());
+        double       high = std::isfinite(last) ? last : 1e-6;
+        while (stroke(high) < process.end_stroke && high < last)
+          {
+            high *= 2;
+            if (high > 1e12)
+              break;
+          }
+        if (stroke(high) < process.end_stroke * (1 - 1e-12))
+          {
+            if (process.end_time == 0)
+              throw InputError::entry("Process/End stroke", fmt::format("{}", process.end_stroke),
+                                      "tool \"" + tools[driving_tool].name +
+                                          "\" never travels that far",
+                                      fmt::format("at most {:.6g} mm", stroke(high)),
+                                      "Lengthen its table or lower the stroke");
+          }
+        else
+          {
+            double low = 0;
+            for (unsigned int i = 0; i < 200 && high - low > 1e-15 * high; ++i)
+              {
+                const double middle                                = 0.5 * (low + high);
+                (stroke(middle) < process.end_stroke ? low : high) = middle;
+              }
+            end_time_ = high;
+          }
+      }
+    for (const Tool &tool : tools)
+      if (tool.motion.end_time() < end_time_ * (1 - 1e-12))
+        throw InputError::entry("Tool " + tool.name + "/Motion/Table file", "",
+                                fmt::format("the table ends at {} s, before the run does at {} s",
+                                            tool.motion.end_time(), end_time_),
+                                "a table up to the end of the run",
+                                "Lengthen it or end the run earlier");
+  }
+
+
+  double Scene::stroke(const double t) const
+  {
+    return driving_tool == no_tool ? 0 : tools[driving_tool].motion.displacement(t).norm();
+  }
+} // namespace axiforge::scene

@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <axiforge/solvers/contact_set.h>
+
+namespace axiforge::solvers
+{
+  namespace
+  {
+    /// Directions closer than this (sine of the angle) are one condition.
+    constexpr double parallel = 0.02;
+
+    double cross(const Vector2 &a, const Vector2 &b)
+    {
+      return a[0] * b[1] - a[1] * b[0];
+    }
+  } // namespace
+
+
+  ContactSet::ContactSet(const scene::Scene &scene, const State &state)
+      : nodes(state.contacts)
+      , scene(scene)
+      , state(state)
+      , n_releases(nodes.size(), 0)
+      , tool_velocities(scene.tools.size())
+      , reach(0.05 * scene.size)
+  {
+    for (const auto &group : state.boundary_ids)
+      {
+        if (group.second >= condition.size())
+          condition.resize(group.second + 1, no_tool);
+        for (unsigned int i = 0; i < scene.boundaries.size(); ++i)
+          if (scene.boundaries[i].name == group.first)
+            condition[group.second] = i;
+      }
+  }
+
+
+  unsigned int ContactSet::condition_of(const dealii::types::boundary_id id) const
+  {
+    return id < condition.size() ? condition[id] : no_tool;
+  }
+
+
+  bool ContactSet::in_concave_pair(const unsigned int b,
+                                   const unsigned int tool,
+                                   const unsigned int face) const
+  {
+    for (unsigned int i = 0; i < 2; ++i)
+      if (nodes[b].tool[i] == tool && nodes[b].face[i] == face)
+        return true;
+    return false;
+  }
+
+
+  unsigned int ContactSet::locate(const Field &velocity, const double time_step)
+  {
+    const double end            = state.time + time_step;
+    const double catch_distance = 1e-10 * scene.size;
+    unsigned int n_changes      = 0;
+
+    std::vector<Vector2> shift(scene.tools.size());
+    for (unsigned int tool = 0; tool < scene.tools.size(); ++tool)
+      {
+        shift[tool] = scene.tools[tool].motion.displacement(end);
+        tool_velocities[tool] =
+            (shift[tool] - scene.tools[tool].motion.displacement(state.time)) / time_step;
+      }
+
+    struct Candidate
+    {
+      unsigned int tool, face;
+      double       gap;
+      Vector2      normal;
+    };
+
+    const auto locate_node = [&](const unsigned int b) {
+      const BoundaryNode &node    = state.tables.boundary_nodes[b];
+      NodeContact        &contact = nodes[b];
+      Point               x       = state.node_position(node.node);
+      for (unsigned int c = 0; c < 2; ++c)
+        x[c] += time_step * velocity.local_element(2 * node.node + c);
+
+      std::array<Candidate, 4> touching;
+      unsigned int             n_touching = 0;
+      for (unsigned int tool = 0; tool < scene.tools.size(); ++tool)
+        {
+          const bool was_active =
+              contact.tool[0] == tool || contact.tool[1] == tool ||
+              (node.axis_neighbour != no_tool && nodes[node.axis_neighbour].tool[0] == tool);
+          std::array<tools::Contact, 2> found;
+          const unsigned int            n =
+              scene.tools[tool].profile.find(x - shift[tool], was_active ? reach : 0, found);
+          for (unsigned int i = 0; i < n && n_touching < touching.size(); ++i)
+            {
+              const bool held = i == 0 ? was_active : in_concave_pair(b, tool, found[i].face);
+              if (held || found[i].gap < -catch_distance)
+                touching[n_touching++] = { tool, found[i].face, found[i].gap, found[i].normal };
+            }
+        }
+      for (unsigned int i = 1; i < n_touching;
+           ++i) // by insertion: there are two at most, as a rule
+        for (unsigned int j = i; j > 0 && touching[j].gap < touching[j - 1].gap; --j)
+          std::swap(touching[j], touching[j - 1]);
+      // The deepest comes first, unless a held one comes before: order must not flicker.
+      unsigned int second = no_tool;
+      for (unsigned int i = 1; i < n_touching && second == no_tool; ++i)
+        if (std::abs(cross(touching[0].normal, touching[i].normal)) > parallel)
+          second = i;
+
+      NodeContact next = contact;
+      next.tool[0] = next.tool[1] = no_tool;
+      if (n_touching > 0)
+        {
+          std::array<unsigned int, 2> order = { { 0, second } };
+          if (second != no_tool && contact.active() && contact.tool[0] == touching[second].tool &&
+              contact.face[0] == touching[second].face)
+            order = { { second, 0 } };
+          for (unsigned int i = 0; i < 2 && order[i] != no_tool; ++i)
+            {
+              next.tool[i]   = touching[order[i]].tool;
+              next.face[i]   = touching[order[i]].face;
+              next.normal[i] = touching[order[i]].normal;
+              next.gap[i]    = touching[order[i]].gap;
+            }
+        }
+      if ((next.tool[0] != contact.tool[0] || next.tool[1] != contact.tool[1]) && node.owned)
+        ++n_changes;
+      contact = next;
+    };
+
+    // The nodes on the axis come last: they follow their neighbours.
+    for (const bool follower : { false, true })
+      for (unsigned int b = 0; b < nodes.size(); ++b)
+        if (state.tables.boundary_nodes[b].free_surface &&
+            (state.tables.boundary_nodes[b].axis_neighbour != no_tool) == follower)
+          locate_node(b);
+    return n_changes;
+  }
+
+
+  unsigned int
+  ContactSet::update_reactions(const Field &force, const Field &scale, const bool may_release)
+  {
+    unsigned int n_changes = 0;
+    for (unsigned int b = 0; b < nodes.size(); ++b)
+      {
+        NodeContact &contact = nodes[b];
+        if (!contact.active())
+          {
+            contact.reaction = { { 0, 0 } };
+            continue;
+          }
+        const BoundaryNode &node = state.tables.boundary_nodes[b];
+        const Vector2       f(
+                  { force.local_element(2 * node.node), force.local_element(2 * node.node + 1) });
+
+        // f = reaction * normal + a second reaction: of the other tool, the axis or the symmetry
+        // line
+        Vector2 second;
+        bool    has_second = true;
+        if (contact.tool[1] != no_tool)
+          second = contact.normal[1];
+        else if (node.on_axis)
+          second = Vector2({ 1., 0. });
+        else if (node.on_symmetry)
+          second = node.symmetry_normal;
+        else
+          has_second = false;
+        const double sine = has_second ? cross(contact.normal[0], second) : 0;
+        if (std::abs(sine) > parallel)
+          {
+            contact.reaction[0] = cross(f, second) / sine;
+            contact.reaction[1] =
+                contact.tool[1] != no_tool ? cross(contact.normal[0], f) / sine : 0;
+          }
+        else
+          contact.reaction = { { f * contact.normal[0], 0 } };
+
+        if (!may_release || n_releases[b] >= 2)
+          continue;
+        const double threshold =
+            -1e-6 * (scale.local_element(2 * node.node) + scale.local_element(2 * node.node + 1));
+        const bool decided_by_neighbour =
+            node.axis_neighbour != no_tool && nodes[node.axis_neighbour].active();
+        bool released = false;
+        if (contact.tool[1] != no_tool && contact.reaction[1] < threshold)
+          {
+            contact.tool[1] = no_tool;
+            released        = true;
+          }
+        if (contact.reaction[0] < threshold && !decided_by_neighbour)
+          {
+            contact.tool[0]   = contact.tool[1];
+            contact.face[0]   = contact.face[1];
+            contact.normal[0] = contact.normal[1];
+            contact.gap[0]    = contact.gap[1];
+            contact.tool[1]   = no_tool;
+            released          = true;
+          }
+        if (released)
+          {
+            ++n_releases[b];
+            n_changes += node.owned;
+          }
+      }
+    return n_changes;
+  }
+
+
+  ContactSet::EdgeContact ContactSet::edge(const unsigned int e, const Field &position) const
+  {
+    const BoundaryEdge &boundary = state.tables.edges[e];
+    const NodeContact  &middle   = nodes[boundary.boundary_nodes[2]];
+    EdgeContact         result;
+    if (!middle.active())
+      return result;
+    result.tool    = middle.tool[0];
+    result.touches = { { false, false, true } };
+    result.normal.fill(middle.normal[0]);
+    for (unsigned int a = 0; a < 2; ++a)
+      {
+        const NodeContact &end = nodes[boundary.boundary_nodes[a]];
+        for (const unsigned int slot : { 1u, 0u })
+          if (end.tool[slot] == result.tool &&
+              (!result.touches[a] || end.face[slot] == middle.face[0]))
+            {
+              result.touches[a] = true;
+              result.normal[a]  = end.normal[slot];
+            }
+      }
+    if (result.touches[0] && result.touches[1])
+      result.weight = { { 1. / 6, 1. / 6, 4. / 6 } };
+    else
+      result.weight = { { result.touches[0] ? 0.25 : 0., result.touches[1] ? 0.25 : 0., 0.25 } };
+
+    std::array<Point, 3> x;
+    for (unsigned int a = 0; a < 3; ++a)
+      for (unsigned int c = 0; c < 2; ++c)
+        x[a][c] = position.local_element(2 * boundary.nodes[a] + c);
+    const Vector2                chord   = x[1] - x[0];
+    const std::array<Vector2, 3> tangent = { { 2 * (x[2] - x[0]) - 0.5 * chord,
+                                               2 * (x[1] - x[2]) - 0.5 * chord, 0.5 * chord } };
+    for (unsigned int a = 0; a < 3; ++a)
+      result.measure[a] = result.weight[a] * 2 * tangent[a].norm() * 2 * M_PI * std::abs(x[a][0]);
+    return result;
+  }
+
+
+  void ContactSet::set_pressures(const Field &position)
+  {
+    if (area.size() == 0)
+      area.reinit(state.velocity);
+    area = 0;
+    for (unsigned int e = 0; e < state.tables.edges.size(); ++e)
+      if (state.tables.edges[e].owned)
+        {
+          const EdgeContact contact = edge(e, position);
+          if (contact.tool != no_tool)
+            for (unsigned int a = 0; a < 3; ++a)
+              area.local_element(2 * state.tables.edges[e].nodes[a]) += contact.measure[a];
+        }
+    area.compress(dealii::VectorOperation::add);
+    area.update_ghost_values();
+    for (unsigned int b = 0; b < nodes.size(); ++b)
+      {
+        const double measure = area.local_element(2 * state.tables.boundary_nodes[b].node);
+        nodes[b].pressure = nodes[b].active() && measure > 0 ? nodes[b].reaction[0] / measure : 0;
+      }
+    // The area of a node on the axis is zero: the pressure is even in r.
+    for (unsigned int b = 0; b < nodes.size(); ++b)
+      if (const unsigned int n = state.tables.boundary_nodes[b].axis_neighbour;
+          n != no_tool && nodes[b].active())
+        nodes[b].pressure = nodes[n].pressure;
+  }
+
+
+  void ContactSet::make_frames(const Field            &velocity,
+                               const double            time_step,
+                               std::vector<NodeFrame> &frames) const
+  {
+    frames.clear();
+    const double middle = state.time + 0.5 * time_step;
+    for (unsigned int b = 0; b < nodes.size(); ++b)
+      {
+        const BoundaryNode &node = state.tables.boundary_nodes[b];
+        const Vector2       v(
+                  { velocity.local_element(2 * node.node), velocity.local_element(2 * node.node + 1) });
+
+        Vector2      direction[2];
+        double       value[2];
+        unsigned int n         = 0;
+        const auto   prescribe = [&](const Vector2 &d, const double increment) {
+          if (n == 0 || (n == 1 && std::abs(cross(direction[0], d)) > parallel))
+            {
+              direction[n] = d;
+              value[n++]   = increment;
+            }
+        };
+
+        if (node.on_axis)
+          prescribe(Vector2({ 1., 0. }), -v[0]);
+        if (node.on_symmetry)
+          prescribe(node.symmetry_normal, -(v * node.symmetry_normal));
+        if (const unsigned int c = condition_of(node.prescribed); c != no_tool)
+          {
+            const Point x = state.node_position(node.node) + 0.5 * time_step * v;
+            for (unsigned int i = 0; i < 2; ++i)
+              if (scene.boundaries[c].velocity[i])
+                {
+                  Vector2 d;
+                  d[i] = 1;
+                  prescribe(d, scene.boundaries[c].velocity[i](x, middle) - v[i]);
+                }
+          }
+        const NodeContact &contact = nodes[b];
+        for (unsigned int i = 0; i < 2; ++i)
+          if (contact.tool[i] != no_tool)
+            prescribe(contact.normal[i], -contact.gap[i] / time_step);
+        if (contact.active() &&
+            scene.tools[contact.tool[0]].friction.kind() == laws::FrictionKind::sticking)
+          {
+            const Vector2 along = tangent(contact.normal[0]);
+            prescribe(along, (tool_velocities[contact.tool[0]] - v) * along);
+          }
+
+        if (n == 0)
+          continue;
+        NodeFrame frame;
+        frame.node = node.node;
+        if (n == 1)
+          {
+            frame.axis         = { { direction[0], tangent(direction[0]) } };
+            frame.fixed[0]     = true;
+            frame.fixed[1]     = false;
+            frame.increment[0] = value[0];
+            frame.increment[1] = 0;
+          }
+        else
+          {
+            // both components follow: dv . d_i = value_i
+            const double sine = cross(direction[0], direction[1]);
+            frame.axis        = { { Vector2({ 1., 0. }), Vector2({ 0., 1. }) } };
+            frame.fixed[0] = frame.fixed[1] = true;
+            frame.increment[0] = (value[0] * direction[1][1] - value[1] * direction[0][1]) / sine;
+            frame.increment[1] = (value[1] * direction[0][0] - value[0] * direction[1][0]) / sine;
+          }
+        frames.push_back(frame);
+      }
+  }
+} // namespace axiforge::solvers

@@ -1,0 +1,476 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <deal.II/base/mpi.h>
+
+#include <axiforge/laws/deviatoric.h>
+#include <axiforge/solvers/flow_solver.h>
+
+namespace axiforge::solvers
+{
+  namespace MPI = dealii::Utilities::MPI;
+
+  void FlowSolver::load_cell(const Field &field, const unsigned int cell, CellDofs &values) const
+  {
+    const auto &nodes = state.tables.cells[cell];
+    for (unsigned int a = 0; a < n_nodes; ++a)
+      {
+        values[2 * a]     = field.local_element(2 * nodes[a]);
+        values[2 * a + 1] = field.local_element(2 * nodes[a] + 1);
+      }
+  }
+
+
+  void
+  FlowSolver::scatter_force(const unsigned int cell, const CellDofs &force, Field &target) const
+  {
+    const auto        &nodes = state.tables.cells[cell];
+    const unsigned int last =
+        hanging_cell[cell] < 0 ? 0 : 8; // nodes that go through the constraints
+    for (unsigned int a = last; a < n_nodes; ++a)
+      for (unsigned int c = 0; c < 2; ++c)
+        target.local_element(2 * nodes[a] + c) += force[2 * a + c];
+    if (last == 0)
+      return;
+    const HangingCell &expanded = hanging[hanging_cell[cell]];
+    for (unsigned int a = 0; a < 8; ++a)
+      for (unsigned int j = 0; j < expanded.n_system; ++j)
+        for (unsigned int c = 0; c < 2; ++c)
+          target.local_element(2 * system_nodes[cell][j] + c) +=
+              expanded.weights[a * expanded.n_system + j] * force[2 * a + c];
+  }
+
+
+  void FlowSolver::evaluate_point(FlowPoint &point,
+                                  const double (&rate)[4],
+                                  const double strain,
+                                  const bool   move_dual) const
+  {
+    const double trace = (rate[0] + rate[1] + rate[2]) / 3;
+    const double e[4]  = { rate[0] - trace, rate[1] - trace, rate[2] - trace, 0.5 * rate[3] };
+
+    if (move_dual)
+      {
+        // S <- 2 mu (e + de) - (kappa/2) (S~ (e:de) + e (S~:de)), all but de of the last iterate
+        const double *old = point.strain_rate;
+        double       *S   = point.stress;
+        const double  length =
+            std::sqrt(1.5 * (S[0] * S[0] + S[1] * S[1] + S[2] * S[2] + 2 * S[3] * S[3]));
+        const double scale_back = length > point.flow_stress ? point.flow_stress / length : 1;
+        double       e_de = 0, S_de = 0, de[4];
+        for (unsigned int i = 0; i < 4; ++i)
+          {
+            const double weight = i == 3 ? 2 : 1;
+            de[i]               = e[i] - old[i];
+            e_de += weight * old[i] * de[i];
+            S_de += weight * scale_back * S[i] * de[i];
+          }
+        for (unsigned int i = 0; i < 4; ++i)
+          S[i] = 2 * point.viscosity * e[i] -
+                 0.5 * point.kappa * (scale_back * S[i] * e_de + old[i] * S_de);
+      }
+
+    const double square    = 2. / 3 * (e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + 2 * e[3] * e[3]);
+    const double smallest  = scene.flow.regularisation * scene.characteristic_rate;
+    const double effective = std::sqrt(square);
+    const double regular   = std::sqrt(square + smallest * smallest);
+    const double here      = strain + theta * time_step * effective;
+    const laws::FlowStress sigma = scene.material.flow_stress(here, regular);
+    const double           slope = sigma.d_strain_rate + theta * time_step * sigma.d_strain;
+    const double           m     = std::clamp(slope * regular / sigma.value, 0., 1.);
+
+    std::copy_n(e, 4, point.strain_rate);
+    point.viscosity      = sigma.value / (3 * regular);
+    point.kappa          = 2. / 3 * (1 - m) / (regular * regular);
+    point.flow_stress    = sigma.value;
+    point.strain         = here;
+    point.effective_rate = effective;
+  }
+
+
+  bool FlowSolver::evaluate_cells(const bool move_dual)
+  {
+    // The configuration in which the equations hold: x_n + theta dt v.
+    position = state.position;
+    position.update_ghost_values();
+    for (unsigned int i = 0; i < 2 * state.tables.n_nodes; ++i)
+      position.local_element(i) += theta * time_step * velocity.local_element(i);
+
+    internal          = 0;
+    scale             = 0;
+    divergence_square = rate_square = 0;
+
+    double       worst      = 1;
+    unsigned int worst_cell = 0;
+    CellGeometry geometry;
+    for (unsigned int cell = 0; cell < state.tables.cells.size(); ++cell)
+      {
+        CellDofs x, v, force{}, magnitude;
+        load_cell(position, cell, x);
+        load_cell(velocity, cell, v);
+        cell_geometry(x, geometry);
+        if (!(geometry.smallest_jacobian > 0))
+          {
+            if (!(geometry.smallest_jacobian >= worst))
+              {
+                worst      = geometry.smallest_jacobian;
+                worst_cell = cell;
+              }
+            continue;
+          }
+        FlowPoint    *p      = points.data() + n_points * cell;
+        const double *strain = state.strain.begin() + state.tables.first_strain_dof[cell];
+        for (unsigned int q = 0; q < n_points; ++q)
+          {
+            double rate[4];
+            strain_rate(geometry, q, v, rate);
+            evaluate_point(p[q], rate, strain[q], move_dual);
+            rate_square += geometry.weight[q] * p[q].effective_rate * p[q].effective_rate;
+          }
+        add_internal_force(geometry, p, force);
+
+        CellRecovery &kept = recovery[cell];
+        cell_divergence(geometry, kept.divergence);
+        for (unsigned int j = 0; j < n_dofs; ++j)
+          {
+            double pressure_force = 0;
+            for (unsigned int i = 0; i < n_pressure; ++i)
+              pressure_force += kept.divergence.gradient[i][j] * pressure[cell][i];
+            magnitude[j] = std::abs(force[j]) + std::abs(pressure_force);
+            force[j] += pressure_force;
+          }
+        double flux[n_pressure], projected[n_pressure];
+        for (unsigned int i = 0; i < n_pressure; ++i)
+          {
+            kept.flux[i] = 0;
+            for (unsigned int j = 0; j < n_dofs; ++j)
+              kept.flux[i] += kept.divergence.gradient[i][j] * v[j];
+            flux[i] = kept.flux[i];
+            if (!scene.flow.iterated()) // the plain penalty asks for div v = p / lambda
+              for (unsigned int j = 0; j < n_pressure; ++j)
+                flux[i] -= kept.divergence.mass[i][j] * pressure[cell][j] / lambda;
+          }
+        solve_mass(kept.divergence, flux, projected);
+        for (unsigned int i = 0; i < n_pressure; ++i)
+          divergence_square += flux[i] * projected[i];
+
+        scatter_force(cell, force, internal);
+        scatter_force(cell, magnitude, scale);
+      }
+    internal.compress(dealii::VectorOperation::add);
+    scale.compress(dealii::VectorOperation::add);
+    divergence_square = MPI::sum(divergence_square, state.communicator);
+    rate_square       = MPI::sum(rate_square, state.communicator);
+
+    const double worst_of_all = MPI::min(worst, state.communicator);
+    if (!(worst_of_all > 0))
+      {
+        // The rank that has the cell says where.
+        double place[2] = { -1e300, -1e300 };
+        if (worst == worst_of_all)
+          {
+            CellDofs x;
+            load_cell(position, worst_cell, x);
+            place[0] = x[16];
+            place[1] = x[17];
+          }
+        place[0] = MPI::max(place[0], state.communicator);
+        place[1] = MPI::max(place[1], state.communicator);
+        failure =
+            fmt::format("a cell near r = {:.4g} mm, z = {:.4g} mm turns over", place[0], place[1]);
+        return false;
+      }
+    return true;
+  }
+
+
+  void FlowSolver::add_external_forces()
+  {
+    if (!cell_external.empty())
+      {
+        for (CellDofs &force : cell_external)
+          force.fill(0);
+        if (scene.body_force)
+          add_body_force();
+        add_boundary_pressure();
+        external = 0;
+        for (unsigned int cell = 0; cell < cell_external.size(); ++cell)
+          scatter_force(cell, cell_external[cell], external);
+        external.compress(dealii::VectorOperation::add);
+        internal.add(-1., external);
+      }
+    internal.update_ghost_values();
+    scale.update_ghost_values();
+  }
+
+
+  void FlowSolver::add_body_force()
+  {
+    CellGeometry         geometry;
+    const ReferenceCell &reference = ReferenceCell::get();
+    for (unsigned int cell = 0; cell < state.tables.cells.size(); ++cell)
+      {
+        CellDofs x;
+        load_cell(position, cell, x);
+        cell_geometry(x, geometry);
+        for (unsigned int q = 0; q < n_points; ++q)
+          {
+            Point at;
+            for (unsigned int a = 0; a < n_nodes; ++a)
+              at += reference.shape[q][a] * Point(x[2 * a], x[2 * a + 1]);
+            const Vector2 b = scene.body_force(at);
+            for (unsigned int a = 0; a < n_nodes; ++a)
+              for (unsigned int c = 0; c < 2; ++c)
+                cell_external[cell][2 * a + c] += geometry.weight[q] * reference.shape[q][a] * b[c];
+          }
+      }
+  }
+
+
+  void FlowSolver::add_boundary_pressure()
+  {
+    // The pressure follows the edge in the present configuration; three Gauss points each.
+    const double gauss[3]  = { -std::sqrt(0.6), 0, std::sqrt(0.6) };
+    const double weight[3] = { 5. / 9, 8. / 9, 5. / 9 };
+    const double middle    = state.time + 0.5 * time_step;
+    for (const BoundaryEdge &edge : state.tables.edges)
+      {
+        const unsigned int condition = edge.owned ? contact->condition_of(edge.id) : no_tool;
+        if (condition == no_tool || scene.boundaries[condition].is_velocity)
+          continue;
+        for (unsigned int q = 0; q < 3; ++q)
+          {
+            const double s     = gauss[q];
+            const double N[3]  = { 0.5 * s * (s - 1), 0.5 * s * (s + 1), 1 - s * s };
+            const double dN[3] = { s - 0.5, s + 0.5, -2 * s };
+            Point        x;
+            Vector2      along;
+            for (unsigned int a = 0; a < 3; ++a)
+              for (unsigned int c = 0; c < 2; ++c)
+                {
+                  const double coordinate = position.local_element(2 * edge.nodes[a] + c);
+                  x[c] += N[a] * coordinate;
+                  along[c] += dN[a] * coordinate;
+                }
+            // To the right of the sides right (+z) and bottom (+r) is outside.
+            const double  sign = edge.side == 1 || edge.side == 2 ? 1 : -1;
+            const Vector2 outward({ sign * along[1], -sign * along[0] });
+            const double  load =
+                -weight[q] * 2 * M_PI * x[0] * scene.boundaries[condition].pressure(x, middle);
+            const auto &local = InterfaceFriction::side_nodes[edge.side];
+            for (unsigned int a = 0; a < 3; ++a)
+              for (unsigned int c = 0; c < 2; ++c)
+                cell_external[edge.cell][2 * local[a] + c] += load * N[a] * outward[c];
+          }
+      }
+  }
+
+
+  void FlowSolver::add_friction_forces()
+  {
+    if (friction->edges().empty())
+      return;
+    friction_force = 0;
+    for (unsigned int e = 0; e < friction->edges().size(); ++e)
+      {
+        const InterfaceFriction::Edge &edge = friction->edges()[e];
+        if (edge.tool == no_tool)
+          continue;
+        for (unsigned int a = 0; a < 3; ++a)
+          for (unsigned int c = 0; c < 2; ++c)
+            friction_force.local_element(2 * state.tables.edges[e].nodes[a] + c) +=
+                edge.force[a] * edge.tangent[a][c];
+      }
+    friction_force.compress(dealii::VectorOperation::add);
+  }
+
+
+  void FlowSolver::assemble()
+  {
+    std::fill(frame_of_node.begin(), frame_of_node.end(), -1);
+    for (unsigned int f = 0; f < frames.size(); ++f)
+      frame_of_node[frames[f].node] = f;
+
+    system->clear();
+    CellGeometry        geometry;
+    double              K[n_dofs][n_dofs];
+    std::vector<double> matrix, rhs, wide;
+    for (unsigned int cell = 0; cell < state.tables.cells.size(); ++cell)
+      {
+        CellDofs x, r{};
+        load_cell(position, cell, x);
+        cell_geometry(x, geometry);
+        CellRecovery         &kept       = recovery[cell];
+        const CellDivergence &divergence = kept.divergence;
+        FlowPoint            *p          = points.data() + n_points * cell;
+        cell_tangent(geometry, p, divergence, lambda, scene.flow.newton(), K);
+
+        // Residual with the pressure that this iteration will set, up to G dv: with the iterated
+        // penalty p + lambda M^-1 G v, with the plain one lambda M^-1 G v.
+        add_internal_force(geometry, p, r);
+        double next[n_pressure];
+        solve_mass(divergence, kept.flux, next);
+        for (unsigned int i = 0; i < n_pressure; ++i)
+          {
+            next[i] = lambda * next[i] + (scene.flow.iterated() ? pressure[cell][i] : 0);
+            for (unsigned int j = 0; j < n_dofs; ++j)
+              r[j] += divergence.gradient[i][j] * next[i];
+          }
+        for (const unsigned int e : cell_edges[cell])
+          if (!friction->edges().empty() && friction->edges()[e].tool != no_tool)
+            {
+              const InterfaceFriction::Edge &edge = friction->edges()[e];
+              const auto &local = InterfaceFriction::side_nodes[state.tables.edges[e].side];
+              for (unsigned int a = 0; a < 3; ++a)
+                for (unsigned int c = 0; c < 2; ++c)
+                  {
+                    r[2 * local[a] + c] += edge.force[a] * edge.tangent[a][c];
+                    for (unsigned int b = 0; b < 3; ++b)
+                      for (unsigned int d = 0; d < 2; ++d)
+                        K[2 * local[a] + c][2 * local[b] + d] +=
+                            edge.tangent[a][c] * edge.matrix[a][b] * edge.tangent[b][d];
+                  }
+            }
+        if (!cell_external.empty())
+          for (unsigned int j = 0; j < n_dofs; ++j)
+            r[j] -= cell_external[cell][j];
+
+        // Condense the centre node.
+        const double k00 = K[16][16], k01 = K[16][17], k11 = K[17][17];
+        const double determinant = k00 * k11 - k01 * k01;
+        for (unsigned int j = 0; j < n_outer; ++j)
+          {
+            kept.interior_gain[0][j] = -(k11 * K[16][j] - k01 * K[17][j]) / determinant;
+            kept.interior_gain[1][j] = -(k00 * K[17][j] - k01 * K[16][j]) / determinant;
+          }
+        kept.interior_step[0] = -(k11 * r[16] - k01 * r[17]) / determinant;
+        kept.interior_step[1] = -(k00 * r[17] - k01 * r[16]) / determinant;
+
+        const unsigned int m = system_nodes[cell].size(), n = 2 * m;
+        matrix.resize(n * n);
+        rhs.resize(n);
+        const auto condensed = [&](const unsigned int i, const unsigned int j) {
+          return K[i][j] + K[i][16] * kept.interior_gain[0][j] +
+                 K[i][17] * kept.interior_gain[1][j];
+        };
+        const auto condensed_rhs = [&](const unsigned int i) {
+          return -(r[i] + K[i][16] * kept.interior_step[0] + K[i][17] * kept.interior_step[1]);
+        };
+        if (hanging_cell[cell] < 0)
+          for (unsigned int i = 0; i < n; ++i)
+            {
+              rhs[i] = condensed_rhs(i);
+              for (unsigned int j = 0; j <= i; ++j)
+                matrix[i * n + j] = matrix[j * n + i] = condensed(i, j);
+            }
+        else
+          {
+            // C^T K C with the weights of the hanging nodes, component by component
+            const HangingCell &expanded = hanging[hanging_cell[cell]];
+            wide.assign(n_outer * n, 0);
+            for (unsigned int i = 0; i < n_outer; ++i)
+              for (unsigned int b = 0; b < 8; ++b)
+                for (unsigned int j = 0; j < m; ++j)
+                  if (const double w = expanded.weights[b * m + j]; w != 0)
+                    for (unsigned int c = 0; c < 2; ++c)
+                      wide[i * n + 2 * j + c] += w * condensed(i, 2 * b + c);
+            std::fill(matrix.begin(), matrix.end(), 0);
+            std::fill(rhs.begin(), rhs.end(), 0);
+            for (unsigned int a = 0; a < 8; ++a)
+              for (unsigned int i = 0; i < m; ++i)
+                if (const double w = expanded.weights[a * m + i]; w != 0)
+                  for (unsigned int c = 0; c < 2; ++c)
+                    {
+                      rhs[2 * i + c] += w * condensed_rhs(2 * a + c);
+                      for (unsigned int j = 0; j < n; ++j)
+                        matrix[(2 * i + c) * n + j] += w * wide[(2 * a + c) * n + j];
+                    }
+          }
+        apply_frames(system_nodes[cell], matrix, rhs);
+        system->add(cell, matrix.data(), rhs.data());
+      }
+  }
+
+
+  void FlowSolver::apply_frames(const std::vector<unsigned int> &nodes,
+                                std::vector<double>             &matrix,
+                                std::vector<double>             &rhs) const
+  {
+    const unsigned int n = 2 * nodes.size();
+    for (unsigned int a = 0; a < nodes.size(); ++a)
+      {
+        const int f = frame_of_node[nodes[a]];
+        if (f < 0)
+          continue;
+        const NodeFrame &frame = frames[f];
+        const Vector2   &u = frame.axis[0], &w = frame.axis[1];
+        // Rotate rows and columns to the axes of the node, then take the fixed components out.
+        for (unsigned int j = 0; j < n; ++j)
+          {
+            const double r = matrix[2 * a * n + j], z = matrix[(2 * a + 1) * n + j];
+            matrix[2 * a * n + j]       = u[0] * r + u[1] * z;
+            matrix[(2 * a + 1) * n + j] = w[0] * r + w[1] * z;
+          }
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            const double r = matrix[i * n + 2 * a], z = matrix[i * n + 2 * a + 1];
+            matrix[i * n + 2 * a]     = r * u[0] + z * u[1];
+            matrix[i * n + 2 * a + 1] = r * w[0] + z * w[1];
+          }
+        const double r = rhs[2 * a], z = rhs[2 * a + 1];
+        rhs[2 * a]     = u[0] * r + u[1] * z;
+        rhs[2 * a + 1] = w[0] * r + w[1] * z;
+      }
+    for (unsigned int a = 0; a < nodes.size(); ++a)
+      {
+        const int f = frame_of_node[nodes[a]];
+        if (f < 0)
+          continue;
+        for (unsigned int c = 0; c < 2; ++c)
+          if (frames[f].fixed[c])
+            {
+              const unsigned int k = 2 * a + c;
+              const double       g = frames[f].increment[c], diagonal = matrix[k * n + k];
+              for (unsigned int i = 0; i < n; ++i)
+                {
+                  rhs[i] -= matrix[i * n + k] * g;
+                  matrix[i * n + k] = matrix[k * n + i] = 0;
+                }
+              matrix[k * n + k] = diagonal;
+              rhs[k]            = diagonal * g;
+            }
+      }
+  }
+
+
+  void FlowSolver::recover()
+  {
+    for (unsigned int cell = 0; cell < state.tables.cells.size(); ++cell)
+      {
+        const CellRecovery &kept = recovery[cell];
+        CellDofs            dv;
+        load_cell(increment, cell, dv);
+        for (unsigned int c = 0; c < 2; ++c)
+          {
+            double step = kept.interior_step[c];
+            for (unsigned int j = 0; j < n_outer; ++j)
+              step += kept.interior_gain[c][j] * dv[j];
+            dv[16 + c]                                                   = step;
+            increment.local_element(2 * state.tables.cells[cell][8] + c) = step;
+          }
+        double flux[n_pressure], correction[n_pressure];
+        for (unsigned int i = 0; i < n_pressure; ++i)
+          {
+            flux[i] = kept.flux[i];
+            for (unsigned int j = 0; j < n_dofs; ++j)
+              flux[i] += kept.divergence.gradient[i][j] * dv[j];
+          }
+        solve_mass(kept.divergence, flux, correction);
+        for (unsigned int i = 0; i < n_pressure; ++i)
+          pressure[cell][i] =
+              lambda * correction[i] + (scene.flow.iterated() ? pressure[cell][i] : 0);
+      }
+    friction->update_dual(increment);
+    for (unsigned int i = 0; i < 2 * state.tables.n_owned_nodes; ++i)
+      velocity.local_element(i) += increment.local_element(i);
+    velocity.update_ghost_values();
+  }
+} // namespace axiforge::solvers

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <deal.II/base/mpi.h>
+
+#include <axiforge/solvers/flow_solver.h>
+
+namespace axiforge::solvers
+{
+  namespace MPI = dealii::Utilities::MPI;
+
+  namespace
+  {
+    Vector2 node_value(const Field &field, const unsigned int node)
+    {
+      return Vector2({ field.local_element(2 * node), field.local_element(2 * node + 1) });
+    }
+
+
+    /**
+     * Radius where the slip changes sign [mm], NaN if it does not. Where several do, the outermost;
+     * nodes that hardly slip (sticking zones) do not count.
+     */
+    double neutral_radius(std::vector<std::array<double, 2>> radius_and_slip)
+    {
+      std::sort(radius_and_slip.begin(), radius_and_slip.end());
+      double largest = 0;
+      for (const auto &entry : radius_and_slip)
+        largest = std::max(largest, std::abs(entry[1]));
+      double                       radius = std::numeric_limits<double>::quiet_NaN();
+      const std::array<double, 2> *last   = nullptr;
+      for (const auto &entry : radius_and_slip)
+        {
+          if (std::abs(entry[1]) < 1e-3 * largest)
+            continue;
+          if (last && (*last)[1] * entry[1] < 0)
+            radius = ((*last)[0] * entry[1] - entry[0] * (*last)[1]) / (entry[1] - (*last)[1]);
+          last = &entry;
+        }
+      return radius;
+    }
+  } // namespace
+
+
+  void FlowSolver::finish(FlowResult &result)
+  {
+    result.velocity = velocity;
+    result.velocity.update_ghost_values();
+    result.edge_friction = friction->history(points);
+
+    StepRecord &record = result.record;
+    record_powers(record);
+    record_tools(record);
+    record_boundaries(record);
+    record.power_residual = record.power_tools + record.power_boundaries - record.power_plastic -
+                            record.power_friction - record.power_contact - record.power_volume;
+
+    result.contacts = contact->nodes;
+    result.cell_history.resize(state.tables.cells.size());
+    CellGeometry geometry;
+    for (unsigned int cell = 0; cell < state.tables.cells.size(); ++cell)
+      {
+        CellDofs x;
+        load_cell(position, cell, x);
+        cell_geometry(x, geometry);
+        CellHistory &history = result.cell_history[cell];
+        history.pressure     = pressure[cell];
+        for (unsigned int q = 0; q < n_points; ++q)
+          {
+            const FlowPoint &point = points[n_points * cell + q];
+            history.mean_stress[q] = 0;
+            for (unsigned int i = 0; i < n_pressure; ++i)
+              history.mean_stress[q] += geometry.pressure_basis[q][i] * pressure[cell][i];
+            for (unsigned int c = 0; c < 4; ++c)
+              history.stress[q][c] = 2 * point.viscosity * point.strain_rate[c];
+            history.strain_rate[q] = point.effective_rate;
+            history.flow_stress[q] = point.flow_stress;
+          }
+      }
+  }
+
+
+  void FlowSolver::record_powers(StepRecord &record)
+  {
+    double       plastic = 0, volume = 0, largest = 0;
+    CellGeometry geometry;
+    for (unsigned int cell = 0; cell < state.tables.cells.size(); ++cell)
+      {
+        CellDofs x;
+        load_cell(position, cell, x);
+        cell_geometry(x, geometry);
+        for (unsigned int q = 0; q < n_points; ++q)
+          {
+            const FlowPoint &point = points[n_points * cell + q];
+            const double    *e     = point.strain_rate;
+            plastic += geometry.weight[q] * 2 * point.viscosity *
+                       (e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + 2 * e[3] * e[3]);
+            largest = std::max(largest, point.effective_rate);
+          }
+        for (unsigned int i = 0; i < n_pressure; ++i)
+          volume += pressure[cell][i] * recovery[cell].flux[i];
+      }
+    double slip = 0;
+    for (const InterfaceFriction::Edge &edge : friction->edges())
+      if (edge.tool != no_tool)
+        slip += edge.power;
+
+    record.power_plastic       = MPI::sum(plastic, state.communicator);
+    record.power_volume        = MPI::sum(volume, state.communicator);
+    record.power_friction      = MPI::sum(slip, state.communicator);
+    record.largest_strain_rate = MPI::max(largest, state.communicator);
+    if (!cell_external.empty())
+      record.power_boundaries += external * velocity;
+  }
+
+
+  void FlowSolver::record_tools(StepRecord &record)
+  {
+    if (scene.tools.empty())
+      return;
+    contact->set_pressures(position);
+
+    // Force of each tool on the workpiece: reactions along the normals, less the friction that
+    // resists.
+    std::vector<Vector2>                            force(scene.tools.size());
+    std::vector<double>                             radius(scene.tools.size(), 0.);
+    std::vector<std::vector<std::array<double, 2>>> slip(scene.tools.size());
+    double                                          power_contact = 0;
+
+    for (unsigned int b = 0; b < contact->nodes.size(); ++b)
+      {
+        const BoundaryNode &node  = state.tables.boundary_nodes[b];
+        NodeContact        &touch = contact->nodes[b];
+        touch.slip = touch.traction = 0;
+        if (!touch.active())
+          continue;
+        const Vector2 v = node_value(velocity, node.node);
+        const Vector2 t = ContactSet::tangent(touch.normal[0]);
+        touch.slip      = (v - contact->tool_velocity(touch.tool[0])) * t;
+        const bool sticking =
+            scene.tools[touch.tool[0]].friction.kind() == laws::FrictionKind::sticking;
+        if (sticking)
+          touch.slip = 0;
+        if (!node.owned)
+          continue;
+        for (unsigned int i = 0; i < 2; ++i)
+          if (touch.tool[i] != no_tool)
+            {
+              const Vector2 relative = v - contact->tool_velocity(touch.tool[i]);
+              force[touch.tool[i]] += touch.reaction[i] * touch.normal[i];
+              power_contact -= touch.reaction[i] * (relative * touch.normal[i]);
+              radius[touch.tool[i]] =
+                  std::max(radius[touch.tool[i]],
+                           state.position.local_element(2 * node.node) + time_step * v[0]);
+            }
+        if (sticking && touch.tool[1] == no_tool && !node.on_axis && !node.on_symmetry)
+          force[touch.tool[0]] += (node_value(internal, node.node) * t) * t;
+        slip[touch.tool[0]].push_back({ { position.local_element(2 * node.node), touch.slip } });
+      }
+    for (unsigned int e = 0; e < friction->edges().size(); ++e)
+      {
+        const InterfaceFriction::Edge &edge = friction->edges()[e];
+        if (edge.tool != no_tool)
+          for (unsigned int a = 0; a < 3; ++a)
+            force[edge.tool] -= edge.force[a] * edge.tangent[a];
+      }
+
+    record.power_contact = MPI::sum(power_contact, state.communicator);
+    record.tools.resize(scene.tools.size());
+    for (unsigned int tool = 0; tool < scene.tools.size(); ++tool)
+      {
+        ToolRecord   &entry  = record.tools[tool];
+        const Vector2 total  = MPI::sum(force[tool], state.communicator);
+        const Vector2 speed  = contact->tool_velocity(tool);
+        const double  along  = speed[1] < 0 ? -1 : 1;
+        entry.force          = along * total[1];
+        entry.radial_force   = total[0];
+        entry.contact_radius = MPI::max(radius[tool], state.communicator);
+        record.power_tools += total * speed;
+
+        std::vector<std::array<double, 2>> all;
+        for (const auto &part : MPI::all_gather(state.communicator, slip[tool]))
+          all.insert(all.end(), part.begin(), part.end());
+        entry.neutral_radius = neutral_radius(all);
+      }
+
+    // Friction traction of the nodes, from the forces of their edges.
+    if (!friction->edges().empty())
+      {
+        friction_force.update_ghost_values();
+        for (unsigned int b = 0; b < contact->nodes.size(); ++b)
+          if (NodeContact &touch = contact->nodes[b]; touch.active())
+            {
+              const unsigned int node = state.tables.boundary_nodes[b].node;
+              const double       area = contact->node_area(node);
+              if (area > 0)
+                touch.traction =
+                    node_value(friction_force, node) * ContactSet::tangent(touch.normal[0]) / area;
+            }
+      }
+  }
+
+
+  void FlowSolver::record_boundaries(StepRecord &record)
+  {
+    record.boundaries.resize(scene.boundaries.size());
+    for (unsigned int i = 0; i < scene.boundaries.size(); ++i)
+      {
+        // Pressure boundaries are loads; they stand in the external forces.
+        const bool prescribed = scene.boundaries[i].is_velocity;
+        double     power = 0, force = 0, flux = 0;
+        if (prescribed)
+          for (const BoundaryNode &node : state.tables.boundary_nodes)
+            if (node.owned && contact->condition_of(node.prescribed) == i)
+              {
+                const Vector2 f = node_value(internal, node.node);
+                power += f * node_value(velocity, node.node);
+                force += f[1];
+              }
+        for (const BoundaryEdge &edge : state.tables.edges)
+          {
+            if (!edge.owned || contact->condition_of(edge.id) != i)
+              continue;
+            const double gauss[3]  = { -std::sqrt(0.6), 0, std::sqrt(0.6) },
+                         weight[3] = { 5. / 9, 8. / 9, 5. / 9 };
+            for (unsigned int q = 0; q < 3; ++q)
+              {
+                const double s     = gauss[q];
+                const double N[3]  = { 0.5 * s * (s - 1), 0.5 * s * (s + 1), 1 - s * s };
+                const double dN[3] = { s - 0.5, s + 0.5, -2 * s };
+                Vector2      x, along, v;
+                for (unsigned int a = 0; a < 3; ++a)
+                  {
+                    x += N[a] * node_value(position, edge.nodes[a]);
+                    v += N[a] * node_value(velocity, edge.nodes[a]);
+                    along += dN[a] * node_value(position, edge.nodes[a]);
+                  }
+                const double sign = edge.side == 1 || edge.side == 2 ? 1 : -1;
+                flux -= weight[q] * 2 * M_PI * x[0] * sign * (along[1] * v[0] - along[0] * v[1]);
+              }
+          }
+        BoundaryRecord &entry = record.boundaries[i];
+        entry.power           = MPI::sum(power, state.communicator);
+        entry.force           = MPI::sum(force, state.communicator);
+        flux                  = MPI::sum(flux, state.communicator);
+        entry.pressure        = prescribed && flux != 0 ? entry.power / flux : 0;
+        record.power_boundaries += entry.power;
+      }
+  }
+} // namespace axiforge::solvers

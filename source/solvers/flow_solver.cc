@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/timer.h>
+
+#include <axiforge/solvers/flow_solver.h>
+
+namespace axiforge::solvers
+{
+  using dealii::Timer;
+  namespace MPI = dealii::Utilities::MPI;
+
+  namespace
+  {
+    /// Releases are decided on iterates whose residual is below this: further away the sign of a
+    /// reaction says little.
+    constexpr double release_residual = 1e-2;
+
+    /// Passes over the lagged strain rate of friction in the first step, which has no step before
+    /// it.
+    constexpr unsigned int first_step_passes = 3;
+  } // namespace
+
+
+  FlowSolver::FlowSolver(const scene::Scene &scene, const State &state)
+      : scene(scene)
+      , state(state)
+      , theta(scene.time.scheme() == scene::TimeScheme::midpoint ? 0.5 : 0.)
+  {
+    const double rate = scene.characteristic_rate;
+    lambda            = scene.flow.penalty * scene.material.flow_stress(0, rate).value / (3 * rate);
+
+    velocity.reinit(state.velocity);
+    increment.reinit(velocity);
+    position.reinit(velocity);
+    internal.reinit(velocity);
+    external.reinit(velocity);
+    friction_force.reinit(velocity);
+    scale.reinit(velocity);
+
+    const std::size_t n_cells = state.tables.cells.size();
+    points.resize(n_points * n_cells);
+    pressure.resize(n_cells);
+    recovery.resize(n_cells);
+    frame_of_node.assign(state.tables.n_nodes, -1);
+    cell_edges.resize(n_cells);
+    for (unsigned int e = 0; e < state.tables.edges.size(); ++e)
+      if (state.tables.edges[e].owned)
+        cell_edges[state.tables.edges[e].cell].push_back(e);
+    bool loads = static_cast<bool>(scene.body_force);
+    for (const scene::BoundaryCondition &boundary : scene.boundaries)
+      loads |= !boundary.is_velocity;
+    if (loads)
+      cell_external.resize(n_cells);
+    make_system();
+  }
+
+
+  void FlowSolver::make_system()
+  {
+    const auto &partitioner = *state.velocity.get_partitioner();
+    any_hanging             = MPI::sum(state.hanging_nodes.n_constraints(), state.communicator) > 0;
+    system_nodes.resize(state.tables.cells.size());
+    hanging_cell.assign(state.tables.cells.size(), -1);
+    for (unsigned int cell = 0; cell < state.tables.cells.size(); ++cell)
+      {
+        const auto &nodes = state.tables.cells[cell];
+        bool        plain = true;
+        for (unsigned int a = 0; any_hanging && a < 8; ++a)
+          plain &= !state.hanging_nodes.is_constrained(partitioner.local_to_global(2 * nodes[a]));
+        if (plain)
+          {
+            system_nodes[cell].assign(nodes.begin(), nodes.begin() + 8);
+            continue;
+          }
+        std::map<unsigned int, std::array<double, 8>> columns;
+        for (unsigned int a = 0; a < 8; ++a)
+          {
+            const auto dof = partitioner.local_to_global(2 * nodes[a]);
+            if (!state.hanging_nodes.is_constrained(dof))
+              columns[nodes[a]][a] += 1;
+            else
+              for (const auto &entry : *state.hanging_nodes.get_constraint_entries(dof))
+                columns[partitioner.global_to_local(entry.first) / 2][a] += entry.second;
+          }
+        HangingCell expanded;
+        expanded.n_system = columns.size();
+        expanded.weights.resize(8 * columns.size());
+        unsigned int j = 0;
+        for (const auto &column : columns)
+          {
+            system_nodes[cell].push_back(column.first);
+            for (unsigned int a = 0; a < 8; ++a)
+              expanded.weights[a * columns.size() + j] = column.second[a];
+            ++j;
+          }
+        hanging_cell[cell] = hanging.size();
+        hanging.push_back(expanded);
+      }
+
+    std::string kind = scene.flow.linear_solver;
+    if (kind == "automatic")
+      kind = MPI::n_mpi_processes(state.communicator) > 1 ? "mumps" : "cholmod";
+    system = make_linear_system(kind, scene.flow.ordering, state, system_nodes);
+  }
+
+
+  FlowResult FlowSolver::solve(const double dt)
+  {
+    Timer      total;
+    FlowResult result;
+    time_step                  = dt;
+    times                      = StepTimes();
+    const double factor_before = system->factor_seconds;
+    const double solve_before  = system->solve_seconds;
+    contact                    = std::make_unique<ContactSet>(scene, state);
+    friction                   = std::make_unique<InterfaceFriction>(scene, state);
+    velocity                   = state.velocity;
+    velocity.update_ghost_values();
+    for (unsigned int cell = 0; cell < pressure.size(); ++cell)
+      {
+        pressure[cell] = state.cell_history[cell].pressure;
+        for (unsigned int q = 0; q < n_points; ++q)
+          for (unsigned int c = 0; c < 4; ++c)
+            points[n_points * cell + q].stress[c] = state.cell_history[cell].stress[q][c];
+      }
+    failure.clear();
+
+    bool                move_dual = false;
+    unsigned int        passes = 0, last_reset = 0, stalled = 0;
+    std::vector<double> residuals;
+    for (unsigned int iteration = 0;; ++iteration)
+      {
+        Timer timer;
+        if (!evaluate_cells(move_dual))
+          break;
+        move_dual = false;
+        add_external_forces();
+        times.residual += timer.wall_time();
+
+        timer.restart();
+        unsigned int changes = contact->locate(velocity, time_step);
+        contact->update_reactions(internal, scale, false);
+        contact->set_pressures(position);
+        friction->evaluate(*contact, position, velocity, points, time_step, scene.flow.newton());
+        add_friction_forces();
+        contact->make_frames(velocity, time_step, frames);
+        Norms norms = measure();
+        if (norms.residual < release_residual)
+          {
+            const unsigned int released = contact->update_reactions(internal, scale, true);
+            if (MPI::sum(released, state.communicator) > 0)
+              {
+                changes += released;
+                contact->set_pressures(position);
+                friction->evaluate(*contact, position, velocity, points, time_step,
+                                   scene.flow.newton());
+                add_friction_forces();
+                contact->make_frames(velocity, time_step, frames);
+                norms = measure();
+              }
+          }
+        changes = MPI::sum(changes, state.communicator);
+        times.contact += timer.wall_time();
+
+        result.record.iterations = iteration;
+        result.record.residual   = norms.residual;
+        result.record.divergence = norms.divergence;
+        result.record.set_changes += iteration > 0 ? changes : 0;
+        if (!std::isfinite(norms.residual + norms.divergence + norms.constraint))
+          {
+            failure = "the iteration ran into numbers that are not finite";
+            break;
+          }
+        const double tolerance = scene.flow.tolerance;
+        if (iteration > 0 && changes == 0 && norms.residual <= tolerance &&
+            norms.divergence <= tolerance && norms.constraint <= tolerance)
+          {
+            if (state.step == 0 && passes < first_step_passes &&
+                friction->refresh_lagged_rates(points))
+              {
+                ++passes;
+                continue;
+              }
+            result.converged = true;
+            break;
+          }
+        if (iteration == scene.flow.most_iterations)
+          {
+            failure =
+                fmt::format("no convergence in {} iterations (residual {:.2g}, divergence {:.2g}, "
+                            "allowed {:.2g})",
+                            iteration, norms.residual, norms.divergence, tolerance);
+            break;
+          }
+
+        // A limit cycle of the dual variables: start them again.
+        residuals.push_back(std::max(norms.residual, norms.divergence));
+        stalled = changes > 0 ? 0 : stalled + 1;
+        if (scene.flow.newton() && stalled > 4 && iteration >= last_reset + 4 &&
+            residuals[iteration] > 0.7 * residuals[iteration - 4])
+          {
+            last_reset = iteration;
+            for (FlowPoint &point : points)
+              std::fill_n(point.stress, 4, 0.);
+            friction->reset_dual();
+            friction->evaluate(*contact, position, velocity, points, time_step, true);
+          }
+
+        timer.restart();
+        assemble();
+        times.assembly += timer.wall_time();
+        if (!solve_increment())
+          {
+            failure = "the matrix is not positive definite";
+            break;
+          }
+        timer.restart();
+        recover();
+        times.assembly += timer.wall_time();
+        move_dual = true;
+      }
+
+    times.factor = system->factor_seconds - factor_before;
+    times.solve  = system->solve_seconds - solve_before;
+    times.total  = total.wall_time();
+    if (result.converged)
+      finish(result);
+    result.failure      = failure;
+    result.record.times = times;
+    return result;
+  }
+
+
+  FlowSolver::Norms FlowSolver::measure() const
+  {
+    // Forces that nothing else balances, over the sum of the magnitudes of the cells' forces.
+    double force = 0, reference = 0, constraint = 0;
+    for (unsigned int node = 0; node < state.tables.n_owned_nodes; ++node)
+      {
+        const Vector2 r(
+            { internal.local_element(2 * node) + friction_force.local_element(2 * node),
+              internal.local_element(2 * node + 1) + friction_force.local_element(2 * node + 1) });
+        reference += scale.local_element(2 * node) * scale.local_element(2 * node) +
+                     scale.local_element(2 * node + 1) * scale.local_element(2 * node + 1);
+        const int f = frame_of_node[node];
+        if (f < 0)
+          force += r.norm_square();
+        else
+          for (unsigned int i = 0; i < 2; ++i)
+            if (!frames[f].fixed[i])
+              force += (r * frames[f].axis[i]) * (r * frames[f].axis[i]);
+      }
+    for (const NodeFrame &frame : frames)
+      for (unsigned int i = 0; i < 2; ++i)
+        if (frame.fixed[i])
+          constraint = std::max(constraint, std::abs(frame.increment[i]));
+
+    force      = MPI::sum(force, state.communicator);
+    reference  = MPI::sum(reference, state.communicator);
+    constraint = MPI::max(constraint, state.communicator);
+    return { reference > 0 ? std::sqrt(force / reference) : 1.,
+             rate_square > 0 ? std::sqrt(divergence_square / rate_square) : 1.,
+             constraint / scene.characteristic_speed };
+  }
+
+
+  bool FlowSolver::solve_increment()
+  {
+    if (!system->solve(increment))
+      return false;
+    for (const NodeFrame &frame : frames)
+      if (frame.node < state.tables.n_owned_nodes)
+        {
+          const Vector2 dv = increment.local_element(2 * frame.node) * frame.axis[0] +
+                             increment.local_element(2 * frame.node + 1) * frame.axis[1];
+          increment.local_element(2 * frame.node)     = dv[0];
+          increment.local_element(2 * frame.node + 1) = dv[1];
+        }
+    if (any_hanging)
+      {
+        increment.zero_out_ghost_values();
+        state.hanging_nodes.distribute(increment);
+      }
+    increment.update_ghost_values();
+    return true;
+  }
+} // namespace axiforge::solvers

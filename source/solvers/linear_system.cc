@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <deal.II/base/timer.h>
+
+#include <Eigen/CholmodSupport>
+#include <Eigen/SparseCore>
+
+#include <axiforge/base/errors.h>
+#include <axiforge/solvers/linear_system.h>
+
+namespace axiforge::solvers
+{
+  std::unique_ptr<LinearSystem> make_mumps_system(const State &state, const SystemNodes &nodes);
+
+  namespace
+  {
+    using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
+
+    /// CHOLMOD's supernodal Cholesky factorisation, assembled straight into its storage.
+    class CholmodSystem : public LinearSystem
+    {
+    public:
+      CholmodSystem(const std::string &ordering, const State &state, const SystemNodes &nodes)
+      {
+        number_rows(state, nodes);
+        make_pattern(nodes);
+
+        const bool dissection =
+            ordering == "nested dissection" || (ordering == "automatic" && n_rows > 10000);
+        cholmod_common &common    = solver.cholmod();
+        common.nmethods           = 1;
+        common.method[0].ordering = dissection ? CHOLMOD_METIS : CHOLMOD_AMD;
+        common.postorder          = 1;
+        common.print = 0; // a matrix that is not positive definite is the caller's to report
+
+        dealii::Timer timer;
+        solver.analyzePattern(matrix);
+        analyse_seconds += timer.wall_time();
+        if (solver.info() != Eigen::Success)
+          throw ComputationError(
+              "CHOLMOD could not analyse the pattern of the matrix: out of memory?");
+      }
+
+      void clear() override
+      {
+        std::fill_n(matrix.valuePtr(), matrix.nonZeros(), 0.);
+        right_hand_side.setZero();
+      }
+
+      void add(const unsigned int cell, const double *values, const double *rhs) override
+      {
+        const std::vector<int> &rows     = cell_rows[cell];
+        const unsigned int      n        = rows.size();
+        const int              *position = positions.data() + first_position[cell];
+        double                 *storage  = matrix.valuePtr();
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            right_hand_side[rows[i]] += rhs[i];
+            for (unsigned int j = 0; j <= i; ++j)
+              storage[*position++] += values[i * n + j];
+          }
+      }
+
+      bool solve(Field &solution) override
+      {
+        dealii::Timer timer;
+        solver.factorize(matrix);
+        factor_seconds += timer.wall_time();
+        if (solver.info() != Eigen::Success)
+          return false;
+        timer.restart();
+        const Eigen::VectorXd x = solver.solve(right_hand_side);
+        solve_seconds += timer.wall_time();
+
+        solution = 0;
+        for (unsigned int i = 0; i < row_of_unknown.size(); ++i)
+          if (row_of_unknown[i] >= 0)
+            solution.local_element(i) = x[row_of_unknown[i]];
+        return x.allFinite();
+      }
+
+      std::string name() const override
+      {
+        return "cholmod";
+      }
+
+    private:
+      void number_rows(const State &state, const SystemNodes &nodes)
+      {
+        row_of_unknown.assign(2 * state.tables.n_nodes, -1);
+        std::vector<bool> used(state.tables.n_nodes, false);
+        for (const auto &cell : nodes)
+          for (const unsigned int node : cell)
+            used[node] = true;
+        int row = 0;
+        for (unsigned int node = 0; node < used.size(); ++node)
+          if (used[node])
+            {
+              row_of_unknown[2 * node]     = row++;
+              row_of_unknown[2 * node + 1] = row++;
+            }
+        n_rows = row;
+        right_hand_side.setZero(n_rows);
+        cell_rows.resize(nodes.size());
+        for (unsigned int cell = 0; cell < nodes.size(); ++cell)
+          for (const unsigned int node : nodes[cell])
+            for (unsigned int c = 0; c < 2; ++c)
+              cell_rows[cell].push_back(row_of_unknown[2 * node + c]);
+      }
+
+      void make_pattern(const SystemNodes &nodes)
+      {
+        std::vector<std::vector<int>> columns(n_rows);
+        for (const auto &rows : cell_rows)
+          for (const int i : rows)
+            for (const int j : rows)
+              if (i >= j)
+                columns[j].push_back(i);
+        matrix.resize(n_rows, n_rows);
+        std::size_t n_entries = 0;
+        for (auto &column : columns)
+          {
+            std::sort(column.begin(), column.end());
+            column.erase(std::unique(column.begin(), column.end()), column.end());
+            n_entries += column.size();
+          }
+        if (n_entries > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+          throw ComputationError(
+              "The matrix is too large for CHOLMOD's 32-bit indices: use several ranks.");
+        matrix.resizeNonZeros(n_entries);
+        int entry = 0;
+        for (std::size_t j = 0; j < n_rows; ++j)
+          {
+            matrix.outerIndexPtr()[j] = entry;
+            for (const int i : columns[j])
+              matrix.innerIndexPtr()[entry++] = i;
+          }
+        matrix.outerIndexPtr()[n_rows] = entry;
+
+        for (unsigned int cell = 0; cell < nodes.size(); ++cell)
+          {
+            first_position.push_back(positions.size());
+            const std::vector<int> &rows = cell_rows[cell];
+            for (unsigned int i = 0; i < rows.size(); ++i)
+              for (unsigned int j = 0; j <= i; ++j)
+                {
+                  const int   row = std::max(rows[i], rows[j]), column = std::min(rows[i], rows[j]);
+                  const auto &list = columns[column];
+                  positions.push_back(
+                      matrix.outerIndexPtr()[column] +
+                      (std::lower_bound(list.begin(), list.end(), row) - list.begin()));
+                }
+          }
+      }
+
+      std::vector<int>              row_of_unknown; ///< -1: not in the system
+      std::vector<std::vector<int>> cell_rows;
+      std::vector<int>         positions; ///< in the matrix' values, lower triangle of each cell
+      std::vector<std::size_t> first_position;
+      SparseMatrix             matrix; ///< lower triangle
+      Eigen::VectorXd          right_hand_side;
+      Eigen::CholmodSupernodalLLT<SparseMatrix, Eigen::Lower> solver;
+    };
+  } // namespace
+
+
+  std::unique_ptr<LinearSystem> make_linear_system(const std::string &kind,
+                                                   const std::string &ordering,
+                                                   const State       &state,
+                                                   const SystemNodes &nodes)
+  {
+    if (kind == "cholmod")
+      return std::make_unique<CholmodSystem>(ordering, state, nodes);
+    return make_mumps_system(state, nodes);
+  }
+} // namespace axiforge::solvers

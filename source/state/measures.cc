@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
+
+#include <axiforge/state/measures.h>
+
+namespace axiforge
+{
+  namespace
+  {
+    /// Shape functions and derivatives of the cell at Gauss points (first nine) and vertices.
+    struct Tables
+    {
+      double shape[13][9], derivative[13][9][2], weight[13];
+
+      explicit Tables(const dealii::FiniteElement<2> &element)
+      {
+        const dealii::QGauss<2> gauss(3);
+        for (unsigned int q = 0; q < 13; ++q)
+          {
+            const Point x = q < 9 ? gauss.point(q) : Point((q - 9) % 2, (q - 9) / 2);
+            weight[q]     = q < 9 ? gauss.weight(q) : 0;
+            for (unsigned int a = 0; a < 9; ++a)
+              {
+                shape[q][a]         = element.shape_value(a, x);
+                const Vector2 slope = element.shape_grad(a, x);
+                derivative[q][a][0] = slope[0];
+                derivative[q][a][1] = slope[1];
+              }
+          }
+      }
+    };
+
+
+    /// Largest radius on the parabola through the nodes (end, end, middle) of an edge.
+    double largest_on_edge(const double a, const double b, const double middle)
+    {
+      double       largest   = std::max({ a, b, middle });
+      const double curvature = a + b - 2 * middle; // r = middle + (b-a)/2 s + curvature/2 s^2
+      if (curvature < 0)
+        if (const double s = -0.5 * (b - a) / curvature; std::abs(s) < 1)
+          largest = std::max(largest, middle + 0.5 * (b - a) * s + 0.5 * curvature * s * s);
+      return largest;
+    }
+  } // namespace
+
+
+  Measures measure(const State &state)
+  {
+    static const Tables tables{ dealii::FE_Q<2>(2) };
+    Measures            result{};
+    result.largest_radius    = 0;
+    result.lowest            = 1e300;
+    result.highest           = -1e300;
+    result.smallest_jacobian = 1e300;
+
+    for (unsigned int cell = 0; cell < state.tables.cells.size(); ++cell)
+      {
+        double x[9][2], smallest = 1e300, area = 0;
+        for (unsigned int a = 0; a < 9; ++a)
+          {
+            const Point p  = state.node_position(state.tables.cells[cell][a]);
+            x[a][0]        = p[0];
+            x[a][1]        = p[1];
+            result.lowest  = std::min(result.lowest, p[1]);
+            result.highest = std::max(result.highest, p[1]);
+          }
+        for (unsigned int q = 0; q < 13; ++q)
+          {
+            double radius = 0, J[2][2] = { { 0, 0 }, { 0, 0 } };
+            for (unsigned int a = 0; a < 9; ++a)
+              {
+                radius += tables.shape[q][a] * x[a][0];
+                for (unsigned int i = 0; i < 2; ++i)
+                  for (unsigned int j = 0; j < 2; ++j)
+                    J[i][j] += x[a][i] * tables.derivative[q][a][j];
+              }
+            const double jacobian = J[0][0] * J[1][1] - J[0][1] * J[1][0];
+            smallest              = std::min(smallest, jacobian);
+            area += jacobian * tables.weight[q];
+            result.volume += 2 * M_PI * radius * jacobian * tables.weight[q];
+          }
+        const double scaled = smallest / std::abs(area);
+        if (!(scaled >= result.smallest_jacobian))
+          {
+            result.smallest_jacobian = scaled;
+            result.worst_place       = Point(x[8][0], x[8][1]);
+          }
+        const double *strain = state.strain.begin() + state.tables.first_strain_dof[cell];
+        result.largest_strain =
+            std::max(result.largest_strain, *std::max_element(strain, strain + 9));
+      }
+    for (unsigned int e = 0; e < state.tables.edges.size(); ++e)
+      if (const BoundaryEdge &edge = state.tables.edges[e]; edge.owned)
+        result.largest_radius =
+            std::max(result.largest_radius, largest_on_edge(state.node_position(edge.nodes[0])[0],
+                                                            state.node_position(edge.nodes[1])[0],
+                                                            state.node_position(edge.nodes[2])[0]));
+
+    namespace MPI            = dealii::Utilities::MPI;
+    const MPI_Comm comm      = state.communicator;
+    const double   mine      = result.smallest_jacobian;
+    result.volume            = MPI::sum(result.volume, comm);
+    result.largest_radius    = MPI::max(result.largest_radius, comm);
+    result.lowest            = MPI::min(result.lowest, comm);
+    result.highest           = MPI::max(result.highest, comm);
+    result.largest_strain    = MPI::max(result.largest_strain, comm);
+    result.smallest_jacobian = MPI::min(mine, comm);
+    for (unsigned int c = 0; c < 2; ++c)
+      result.worst_place[c] =
+          MPI::max(mine == result.smallest_jacobian ? result.worst_place[c] : -1e300, comm);
+    return result;
+  }
+} // namespace axiforge

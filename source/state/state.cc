@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/dofs/dof_tools.h>
+
+#include <axiforge/base/errors.h>
+#include <axiforge/state/state.h>
+
+namespace axiforge
+{
+  using namespace dealii;
+
+  State::State(const MPI_Comm comm)
+      : communicator(comm)
+      , triangulation(comm)
+      , flow_element(FE_Q<2>(2), 2)
+      , flow_dofs(triangulation)
+      , history_element(QGauss<1>(3))
+      , history_dofs(triangulation)
+  {
+  }
+
+
+  void State::setup_dofs()
+  {
+    flow_dofs.distribute_dofs(flow_element);
+    history_dofs.distribute_dofs(history_element);
+
+    const IndexSet relevant = DoFTools::extract_locally_relevant_dofs(flow_dofs);
+    position.reinit(flow_dofs.locally_owned_dofs(), relevant, communicator);
+    velocity.reinit(position);
+
+    const IndexSet relevant_history = DoFTools::extract_locally_relevant_dofs(history_dofs);
+    strain.reinit(history_dofs.locally_owned_dofs(), relevant_history, communicator);
+
+    hanging_nodes.clear();
+    hanging_nodes.reinit(relevant);
+    DoFTools::make_hanging_node_constraints(flow_dofs, hanging_nodes);
+    hanging_nodes.close();
+  }
+
+
+  void State::setup_tables()
+  {
+    tables                  = MeshTables();
+    const auto &partitioner = *position.get_partitioner();
+    tables.n_owned_nodes    = partitioner.locally_owned_size() / 2;
+    tables.n_nodes          = tables.n_owned_nodes + partitioner.n_ghost_indices() / 2;
+    tables.n_global_cells   = triangulation.n_global_active_cells();
+
+    // Node k has the unknowns 2k and 2k+1: FESystem numbers the two components of a support point
+    // one after the other; everything here rests on it.
+    std::vector<types::global_dof_index> dofs(flow_element.n_dofs_per_cell());
+    std::vector<types::global_dof_index> history(history_element.n_dofs_per_cell());
+    std::map<unsigned int, unsigned int> row_of_node;
+
+    const types::boundary_id axis =
+        boundary_ids.count("axis") ? boundary_ids.at("axis") : numbers::invalid_boundary_id;
+    const types::boundary_id symmetry =
+        boundary_ids.count("symmetry") ? boundary_ids.at("symmetry") : numbers::invalid_boundary_id;
+
+    const types::boundary_id surface =
+        boundary_ids.count("surface") ? boundary_ids.at("surface") : numbers::invalid_boundary_id;
+
+    const unsigned int side_nodes[4][3] = { { 0, 2, 4 }, { 1, 3, 5 }, { 0, 1, 6 }, { 2, 3, 7 } };
+
+    for (const auto &cell : flow_dofs.active_cell_iterators())
+      {
+        if (cell->is_artificial())
+          continue;
+        cell->get_dof_indices(dofs);
+        std::array<unsigned int, 9> nodes;
+        for (unsigned int a = 0; a < 9; ++a)
+          {
+            const unsigned int r = partitioner.global_to_local(dofs[2 * a]);
+            AssertThrow(r % 2 == 0 && partitioner.global_to_local(dofs[2 * a + 1]) == r + 1,
+                        ExcInternalError());
+            nodes[a] = r / 2;
+          }
+        for (unsigned int side = 0; side < 4; ++side)
+          if (cell->at_boundary(side))
+            {
+              BoundaryEdge edge;
+              edge.owned = cell->is_locally_owned();
+              edge.cell  = tables.cells.size();
+              edge.side  = side;
+              edge.id    = cell->face(side)->boundary_id();
+              for (unsigned int a = 0; a < 3; ++a)
+                {
+                  const unsigned int node = nodes[side_nodes[side][a]];
+                  edge.nodes[a]           = node;
+                  const auto found        = row_of_node.emplace(node, tables.boundary_nodes.size());
+                  if (found.second)
+                    {
+                      BoundaryNode entry{};
+                      entry.node           = node;
+                      entry.owned          = node < tables.n_owned_nodes;
+                      entry.prescribed     = numbers::invalid_boundary_id;
+                      entry.axis_neighbour = no_tool;
+                      tables.boundary_nodes.push_back(entry);
+                    }
+                  edge.boundary_nodes[a] = found.first->second;
+                }
+              tables.edges.push_back(edge);
+            }
+        if (cell->is_locally_owned())
+          {
+            tables.cells.push_back(nodes);
+            const DoFHandler<2>::active_cell_iterator history_cell(&triangulation, cell->level(),
+                                                                   cell->index(), &history_dofs);
+            history_cell->get_dof_indices(history);
+            const unsigned int first = strain.get_partitioner()->global_to_local(history[0]);
+            for (unsigned int q = 0; q < history.size(); ++q)
+              AssertThrow(strain.get_partitioner()->global_to_local(history[q]) == first + q,
+                          ExcInternalError());
+            tables.first_strain_dof.push_back(first);
+          }
+      }
+
+    for (const BoundaryEdge &edge : tables.edges)
+      for (const unsigned int b : edge.boundary_nodes)
+        {
+          BoundaryNode &node = tables.boundary_nodes[b];
+          if (edge.id == axis)
+            node.on_axis = true;
+          else if (edge.id == symmetry)
+            {
+              node.on_symmetry     = true;
+              const Vector2 along  = node_position(edge.nodes[1]) - node_position(edge.nodes[0]);
+              node.symmetry_normal = Vector2({ -along[1], along[0] }) / along.norm();
+            }
+          else
+            {
+              node.free_surface = true;
+              if (edge.id != surface)
+                node.prescribed = edge.id;
+            }
+        }
+
+    // In an axisymmetric Q2 edge the node on the axis has weight zero: its reaction says nothing,
+    // and the middle of its edge decides for it.
+    for (const BoundaryEdge &edge : tables.edges)
+      if (edge.id != axis)
+        for (unsigned int a = 0; a < 2; ++a)
+          if (tables.boundary_nodes[edge.boundary_nodes[a]].on_axis)
+            tables.boundary_nodes[edge.boundary_nodes[a]].axis_neighbour = edge.boundary_nodes[2];
+
+    contacts.assign(tables.boundary_nodes.size(), NodeContact());
+    edge_friction.assign(tables.edges.size(), EdgeFriction());
+    cell_history.assign(tables.cells.size(), CellHistory{});
+  }
+} // namespace axiforge

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// CSV tables, geometry parameters and the gmsh session.
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <gmsh.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <axiforge/base/csv.h>
+#include <axiforge/base/errors.h>
+#include <axiforge/base/geometry_parameters.h>
+#include <axiforge/base/gmsh_session.h>
+
+using namespace axiforge;
+
+namespace
+{
+  class Input : public ::testing::Test
+  {
+  protected:
+    void SetUp() override
+    {
+      folder = (std::filesystem::temp_directory_path() /
+                ("axiforge_input_" + std::to_string(::getpid())))
+                   .string();
+      std::filesystem::create_directories(folder);
+    }
+
+    void TearDown() override
+    {
+      std::filesystem::remove_all(folder);
+    }
+
+    std::string file(const std::string &name, const std::string &text) const
+    {
+      const std::string path = folder + "/" + name;
+      std::ofstream(path) << text;
+      return path;
+    }
+
+    std::string folder;
+  };
+
+  template <typename Action>
+  void expect_fault(const Action &action, const std::vector<std::string> &parts)
+  {
+    try
+      {
+        action();
+        ADD_FAILURE() << "no InputError, expected: " << parts[0];
+      }
+    catch (const InputError &error)
+      {
+        for (const std::string &part : parts)
+          EXPECT_NE(std::string(error.what()).find(part), std::string::npos)
+              << "\"" << part << "\" in: " << error.what();
+      }
+  }
+
+  /// r of the model's last point.
+  double radius()
+  {
+    std::vector<double> x;
+    gmsh::model::getValue(0, 2, {}, x);
+    return x.at(0);
+  }
+
+  const char *const line_geo =
+      "DefineConstant[ Radius = {25, Name \"Radius\"} ];\n"
+      "DefineConstant[ Plain = 3 ];\n"
+      "Point(1) = {0, 0, 0}; Point(2) = {Radius, Plain, 0}; Line(1) = {1, 2};\n"
+      "Physical Curve(\"tool\") = {-1}; Physical Curve(7) = {1};\n";
+} // namespace
+
+TEST_F(Input, CsvInItsVariants)
+{
+  for (const std::string text :
+       { "# about\ntime_s, force_N\n0, 1.5 # first\n\n+2e-1,\t-3\n",
+         "time_s;force_N\n0;1.5\n.2;-3\n", "\xEF\xBB\xBFtime_s force_N\r\n0   1.5\r\n0.2\t-3\r\n" })
+    {
+      const CsvTable table = read_csv(file("a.csv", text), "Entry");
+      EXPECT_EQ(table.header, std::vector<std::string>({ "time_s", "force_N" }));
+      EXPECT_EQ(table.find_column("force_N"), 1);
+      EXPECT_EQ(table.find_column("force"), -1);
+      EXPECT_EQ(table.rows, std::vector<std::vector<double>>({ { 0, 1.5 }, { 0.2, -3 } }));
+    }
+  const CsvTable plain = read_csv(file("a.csv", "\n1,2\n3,4"), "Entry");
+  EXPECT_TRUE(plain.header.empty());
+  EXPECT_EQ(plain.columns(), 2u);
+  EXPECT_EQ(plain.lines, std::vector<unsigned int>({ 2, 3 }));
+  EXPECT_NE(plain.where(1).find("a.csv\", line 3"), std::string::npos);
+}
+
+TEST_F(Input, FaultyCsv)
+{
+  const auto fault = [&](const std::string &text, const std::vector<std::string> &parts) {
+    expect_fault([&]() { read_csv(file("a.csv", text), "Tool/Table"); }, parts);
+  };
+  fault("a,b\n1,2\n1,x\n", { "Tool/Table", "a.csv", "\"x\"", "line 3" });
+  fault("a,b\n1,2\n1\n", { "line 3", "1 entries", "2" });
+  fault("a,b\n1,2,3\n", { "line 2", "3 entries" });
+  fault("1,nan\n", { "nan" });
+  fault("1,5;2,5\n1,5;3,5\n", { "1,5" }); // decimal commas: taken for a header, then found out
+  fault("# nothing\n", { "0 row" });
+  expect_fault([&]() { read_csv(folder + "/none.csv", "Tool/Table"); },
+               { "Tool/Table", "none.csv" });
+}
+
+TEST_F(Input, GeometryValues)
+{
+  EXPECT_TRUE(parse_geometry_parameters("  ", "E").empty());
+  EXPECT_EQ(parse_geometry_parameters(" Radius = 25,Part/Height=1.5e1 ", "E"),
+            GeometryValues({ { "Radius", 25 }, { "Part/Height", 15 } }));
+  const auto fault = [](const std::string &text, const std::string &part) {
+    expect_fault([&]() { parse_geometry_parameters(text, "Workpiece/Geometry parameters"); },
+                 { "Workpiece/Geometry parameters", part });
+  };
+  fault("Radius", "\"Radius\" has no \"=\"");
+  fault("Radius = x", "\"x\" for Radius");
+  fault("= 3", "no name");
+  fault("R = 3, R = 4", "twice");
+  fault("R = 3,", "has no \"=\"");
+}
+
+TEST_F(Input, PathsCountFromTheFolderOfTheParameterFile)
+{
+  EXPECT_EQ(resolve_path("scenes", "geometry/a.geo"), "scenes/geometry/a.geo");
+  EXPECT_EQ(resolve_path("scenes", "../a.geo"), "a.geo");
+  EXPECT_EQ(resolve_path("scenes", "/tmp/a.geo"), "/tmp/a.geo");
+  EXPECT_EQ(resolve_path("", "a.geo"), "a.geo");
+}
+
+TEST_F(Input, EntriesOfAGeometry)
+{
+  GeometryParameters       workpiece, tool;
+  dealii::ParameterHandler prm;
+  prm.enter_subsection("Workpiece");
+  workpiece.declare_workpiece(prm);
+  prm.leave_subsection();
+  prm.enter_subsection("Tool upper");
+  tool.declare_profile(prm);
+  prm.leave_subsection();
+  EXPECT_EQ(workpiece.physical_group, "workpiece");
+  prm.parse_input_from_string("subsection Workpiece\n set Geometry file = a.geo\n"
+                              " set Geometry parameters = Radius = 25, Height = 3\n"
+                              " set Element size = 0.5\n set Refinement levels = 2\nend\n"
+                              "subsection Tool upper\n set Physical group = upper die\nend\n");
+  EXPECT_EQ(workpiece.file, "a.geo");
+  EXPECT_EQ(workpiece.parameters, "Radius = 25, Height = 3");
+  EXPECT_EQ(workpiece.element_size, 0.5);
+  EXPECT_EQ(workpiece.refinement_levels, 2u);
+  EXPECT_EQ(tool.physical_group, "upper die");
+}
+
+TEST_F(Input, GmshTakesParametersByTheirName)
+{
+  const std::string path = file("line.geo", line_geo);
+  GmshSession       session;
+  session.open(path);
+  EXPECT_EQ(radius(), 25);
+  session.open(path, { { "Radius", 31.5 } });
+  EXPECT_EQ(radius(), 31.5);
+  session.open(path); // nothing is left over
+  EXPECT_EQ(radius(), 25);
+  EXPECT_EQ(session.group_names(1), std::vector<std::string>({ "7", "tool" }));
+  EXPECT_EQ(session.entities_of_group(1, "tool"), std::vector<int>({ 1 }));
+  EXPECT_EQ(session.entities_of_group(1, "7"), std::vector<int>({ 1 }));
+  EXPECT_TRUE(session.entities_of_group(1, "die").empty());
+
+  for (const std::string name : { "Radios", "Plain" }) // the second has no Name
+    expect_fault(
+        [&]() {
+          session.open(path, { { name, 3 } }, "Tool/Geometry file");
+        },
+        { "Tool/Geometry file", "\"" + name + "\"", "\"Radius\"", "DefineConstant" });
+}
+
+TEST_F(Input, GmshSessionsNestAndSurviveErrors)
+{
+  const std::string good = file("line.geo", line_geo);
+  GmshSession       outer;
+  {
+    GmshSession inner;
+    expect_fault(
+        [&]() {
+          inner.open(file("bad.geo", "Point(1) = {0, 0, 0};\nLine(1) = {1, 7};\nx = y;\n"), {},
+                     "E");
+        },
+        { "E", "bad.geo", "line 2", "Unknown variable 'y'" });
+    inner.open(good);
+  }
+  EXPECT_EQ(radius(), 25);
+  outer.open(good, { { "Radius", 4 } });
+  EXPECT_EQ(radius(), 4);
+}
+
+TEST_F(Input, GmshAfterGmsh)
+{
+  for (unsigned int i = 0; i < 3; ++i)
+    {
+      GmshSession session;
+      session.open(file("line.geo", line_geo), { { "Radius", 1. + i } });
+      EXPECT_EQ(radius(), 1. + i);
+    }
+}
+
+TEST_F(Input, FaultyGmshFiles)
+{
+  GmshSession session;
+  expect_fault([&]() { session.open(folder + "/none.geo", {}, "E"); },
+               { "E", "none.geo", "no such file" });
+  expect_fault([&]() { session.open(folder + "/a.txt", {}, "E"); }, { "a.txt", ".geo, .msh" });
+  expect_fault(
+      [&]() {
+        session.open(file("a.msh", ""), { { "R", 1 } }, "E");
+      },
+      { "parameters", ".geo only" });
+  expect_fault([&]() { session.open(file("a.geo", "x = 1; Exit ;\n"), {}, "E"); }, { "Exit" });
+  session.open(
+      file("a.geo", "// Exit;\nPrintf(\"Exit;\"); /* Exit; */ DoExit = 1;\n")); // none of these
+  expect_fault([&]() { session.open(file("a.step", "nonsense\n"), {}, "E"); }, { "E", "a.step" });
+  expect_fault([&]() { session.open(file("a.msh", "nonsense\n"), {}, "E"); }, { "E", "a.msh" });
+}
+
+int main(int argc, char **argv)
+{
+  ::testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}
