@@ -167,7 +167,7 @@ TEST_F(Input, GmshTakesParametersByTheirName)
   EXPECT_EQ(radius(), 31.5);
   session.open(path); // nothing is left over
   EXPECT_EQ(radius(), 25);
-  EXPECT_EQ(session.group_names(1), std::vector<std::string>({ "7", "tool" }));
+  EXPECT_EQ(session.group_names(1), std::vector<std::string>({ "tool", "7" }));
   EXPECT_EQ(session.entities_of_group(1, "tool"), std::vector<int>({ 1 }));
   EXPECT_EQ(session.entities_of_group(1, "7"), std::vector<int>({ 1 }));
   EXPECT_TRUE(session.entities_of_group(1, "die").empty());

@@ -97,7 +97,7 @@ namespace axiforge::meshing
       // Sorted along r, too: only vertices between the ends of an edge have to be looked at.
       std::vector<unsigned int> on_boundary;
       for (const WorkpieceMesh::BoundaryEdge &edge : mesh.boundary_edges)
-        on_boundary.push_back(edge.v0);
+        on_boundary.insert(on_boundary.end(), { edge.v0, edge.v1 });
       std::sort(on_boundary.begin(), on_boundary.end(),
                 [&](const unsigned int a, const unsigned int b) {
                   return x[a][0] != x[b][0] ? x[a][0] < x[b][0] : a < b;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <deal.II/base/exceptions.h>
+#include <deal.II/base/mpi.h>
 #include <deal.II/fe/fe_system.h>
 #include <deal.II/grid/grid_tools.h>
 
@@ -43,6 +44,41 @@ namespace axiforge::meshing
       return nodes[8];
     }
   } // namespace
+
+  void share_from_first_rank(WorkpieceMesh &mesh, const MPI_Comm communicator)
+  {
+    if (dealii::Utilities::MPI::n_mpi_processes(communicator) == 1)
+      return;
+
+    // One list of numbers each for the geometry and the edges' topology.
+    std::vector<Point> points = mesh.vertices;
+    for (const std::array<Point, 9> &nodes : mesh.cell_nodes)
+      points.insert(points.end(), nodes.begin(), nodes.end());
+    std::vector<unsigned int> numbers = { static_cast<unsigned int>(mesh.vertices.size()),
+                                          static_cast<unsigned int>(mesh.cells.size()) };
+    for (const std::array<unsigned int, 4> &cell : mesh.cells)
+      numbers.insert(numbers.end(), cell.begin(), cell.end());
+    for (const WorkpieceMesh::BoundaryEdge &edge : mesh.boundary_edges)
+      numbers.insert(numbers.end(), { edge.v0, edge.v1, static_cast<unsigned int>(edge.id) });
+
+    points            = dealii::Utilities::MPI::broadcast(communicator, points, 0);
+    numbers           = dealii::Utilities::MPI::broadcast(communicator, numbers, 0);
+    mesh.boundary_ids = dealii::Utilities::MPI::broadcast(communicator, mesh.boundary_ids, 0);
+
+    const unsigned int n_vertices = numbers[0], n_cells = numbers[1];
+    mesh.vertices.assign(points.begin(), points.begin() + n_vertices);
+    mesh.cells.resize(n_cells);
+    mesh.cell_nodes.resize(n_cells);
+    for (unsigned int c = 0; c < n_cells; ++c)
+      {
+        std::copy_n(points.begin() + n_vertices + 9 * c, 9, mesh.cell_nodes[c].begin());
+        std::copy_n(numbers.begin() + 2 + 4 * c, 4, mesh.cells[c].begin());
+      }
+    mesh.boundary_edges.clear();
+    for (std::size_t i = 2 + 4 * n_cells; i < numbers.size(); i += 3)
+      mesh.boundary_edges.push_back(
+          { numbers[i], numbers[i + 1], static_cast<dealii::types::boundary_id>(numbers[i + 2]) });
+  }
 
   void create_triangulation(const WorkpieceMesh                             &mesh,
                             dealii::parallel::distributed::Triangulation<2> &triangulation)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <map>
 #include <set>
 #include <utility>
@@ -138,13 +139,19 @@ namespace axiforge::meshing
           gmsh::option::setNumber("Mesh.MeshSizeMax", size);
         }
 
-      source.session.run("meshing the workpiece", [&]() {
+      // gmsh shifts points at random by about 1e-10 of the size, with the C library's generator,
+      // and seeds that only once per process.
+      const auto generate = []() {
+        std::srand(1);
         gmsh::model::mesh::generate(2);
+      };
+      source.session.run("meshing the workpiece", [&]() {
+        generate();
         if (count_non_quadrilaterals(surfaces) > 0)
           {
             gmsh::model::mesh::clear();
             gmsh::option::setNumber("Mesh.RecombinationAlgorithm", 2);
-            gmsh::model::mesh::generate(2);
+            generate();
           }
         gmsh::model::mesh::setOrder(2);
       });

@@ -44,6 +44,8 @@ namespace axiforge::output
                                 { "largest_strain", r.largest_strain },
                                 { "largest_strain_rate_per_s", r.largest_strain_rate },
                                 { "largest_radius_mm", r.largest_radius },
+                                { "smallest_jacobian", r.smallest_jacobian },
+                                { "smallest_vertex_jacobian", r.smallest_vertex_jacobian },
                                 { "cells", r.cells },
                                 { "unknowns", r.unknowns },
                                 { "iterations", r.iterations },

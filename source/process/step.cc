@@ -126,18 +126,20 @@ namespace axiforge::process
               {
                 StepRecord record = result.record;
                 accept(state, result, time_step);
-                record.step                   = state.step;
-                record.time                   = state.time;
-                record.time_step              = time_step;
-                record.stroke                 = scene.stroke(state.time);
-                record.volume                 = size.volume;
-                record.relative_volume_change = size.volume / state.initial_volume - 1;
-                record.largest_radius         = size.largest_radius;
-                record.largest_strain         = measure(state).largest_strain;
-                record.cells                  = state.tables.n_global_cells;
-                record.unknowns               = state.n_unknowns();
-                record.repeats                = repeats;
-                record.iterations             = iterations;
+                record.step                     = state.step;
+                record.time                     = state.time;
+                record.time_step                = time_step;
+                record.stroke                   = scene.stroke(state.time);
+                record.volume                   = size.volume;
+                record.relative_volume_change   = size.volume / state.initial_volume - 1;
+                record.largest_radius           = size.largest_radius;
+                record.smallest_jacobian        = size.smallest_jacobian;
+                record.smallest_vertex_jacobian = size.smallest_vertex_jacobian;
+                record.largest_strain           = measure(state).largest_strain;
+                record.cells                    = state.tables.n_global_cells;
+                record.unknowns                 = state.n_unknowns();
+                record.repeats                  = repeats;
+                record.iterations               = iterations;
                 return record;
               }
             result.failure = fmt::format("a cell near r = {:.4g} mm, z = {:.4g} mm turns over",

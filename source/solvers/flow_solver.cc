@@ -15,6 +15,9 @@ namespace axiforge::solvers
     /// reaction says little.
     constexpr double release_residual = 1e-2;
 
+    /// Share of the size of the workpiece that positions are exact to.
+    constexpr double round_off = 1e-13;
+
     /// Passes over the lagged strain rate of friction in the first step, which has no step before
     /// it.
     constexpr unsigned int first_step_passes = 3;
@@ -260,7 +263,8 @@ namespace axiforge::solvers
     constraint = MPI::max(constraint, state.communicator);
     return { reference > 0 ? std::sqrt(force / reference) : 1.,
              rate_square > 0 ? std::sqrt(divergence_square / rate_square) : 1.,
-             constraint / scene.characteristic_speed };
+             std::max(0., constraint - round_off * scene.size / time_step) /
+                 scene.characteristic_speed };
   }
 
 

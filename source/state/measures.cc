@@ -52,11 +52,11 @@ namespace axiforge
     result.largest_radius    = 0;
     result.lowest            = 1e300;
     result.highest           = -1e300;
-    result.smallest_jacobian = 1e300;
+    result.smallest_jacobian = result.smallest_vertex_jacobian = 1e300;
 
     for (unsigned int cell = 0; cell < state.tables.cells.size(); ++cell)
       {
-        double x[9][2], smallest = 1e300, area = 0;
+        double x[9][2], smallest = 1e300, corner = 1e300, area = 0;
         for (unsigned int a = 0; a < 9; ++a)
           {
             const Point p  = state.node_position(state.tables.cells[cell][a]);
@@ -76,11 +76,14 @@ namespace axiforge
                     J[i][j] += x[a][i] * tables.derivative[q][a][j];
               }
             const double jacobian = J[0][0] * J[1][1] - J[0][1] * J[1][0];
-            smallest              = std::min(smallest, jacobian);
+            double      &least    = q < 9 ? smallest : corner;
+            least                 = std::min(least, jacobian);
             area += jacobian * tables.weight[q];
             result.volume += 2 * M_PI * radius * jacobian * tables.weight[q];
           }
         const double scaled = smallest / std::abs(area);
+        result.smallest_vertex_jacobian =
+            std::min(result.smallest_vertex_jacobian, corner / std::abs(area));
         if (!(scaled >= result.smallest_jacobian))
           {
             result.smallest_jacobian = scaled;
@@ -97,15 +100,16 @@ namespace axiforge
                                                             state.node_position(edge.nodes[1])[0],
                                                             state.node_position(edge.nodes[2])[0]));
 
-    namespace MPI            = dealii::Utilities::MPI;
-    const MPI_Comm comm      = state.communicator;
-    const double   mine      = result.smallest_jacobian;
-    result.volume            = MPI::sum(result.volume, comm);
-    result.largest_radius    = MPI::max(result.largest_radius, comm);
-    result.lowest            = MPI::min(result.lowest, comm);
-    result.highest           = MPI::max(result.highest, comm);
-    result.largest_strain    = MPI::max(result.largest_strain, comm);
-    result.smallest_jacobian = MPI::min(mine, comm);
+    namespace MPI                   = dealii::Utilities::MPI;
+    const MPI_Comm comm             = state.communicator;
+    const double   mine             = result.smallest_jacobian;
+    result.volume                   = MPI::sum(result.volume, comm);
+    result.largest_radius           = MPI::max(result.largest_radius, comm);
+    result.lowest                   = MPI::min(result.lowest, comm);
+    result.highest                  = MPI::max(result.highest, comm);
+    result.largest_strain           = MPI::max(result.largest_strain, comm);
+    result.smallest_jacobian        = MPI::min(mine, comm);
+    result.smallest_vertex_jacobian = MPI::min(result.smallest_vertex_jacobian, comm);
     for (unsigned int c = 0; c < 2; ++c)
       result.worst_place[c] =
           MPI::max(mine == result.smallest_jacobian ? result.worst_place[c] : -1e300, comm);

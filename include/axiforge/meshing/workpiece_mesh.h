@@ -68,12 +68,21 @@ namespace axiforge::meshing
    * Curved edges get their middle nodes on the curve.
    *
    * Throws InputError for what is wrong with the entries, the file or the mesh. @p section is that
-   * of the workpiece in the `.prm`, @p directory that of the `.prm`. The same input gives the same
-   * mesh, so that every rank can read it for itself.
+   * of the workpiece in the `.prm`, @p directory that of the `.prm`.
+   *
+   * A process that does the same calls gets the same mesh. If it meshes the same file twice, gmsh's
+   * random shifts differ in the last digits (1e-10 of the size): with several ranks, use
+   * share_from_first_rank().
    */
   WorkpieceMesh read_workpiece(const GeometryParameters &parameters,
                                const std::string        &section,
                                const std::string        &directory);
+
+  /**
+   * Replace @p mesh by that of rank 0, so that all ranks have the same to the last bit. Every rank
+   * reads the file first, so that a fault in it ends all of them in the same way.
+   */
+  void share_from_first_rank(WorkpieceMesh &mesh, MPI_Comm communicator);
 
   /**
    * Make the coarse mesh of @p triangulation: same numbers of cells and vertices as in @p mesh, but

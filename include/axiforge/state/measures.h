@@ -12,9 +12,10 @@ namespace axiforge
     double largest_radius;    ///< [mm], on the Q2 edges of the surface, not only at nodes
     double lowest, highest;   ///< z [mm]
     double largest_strain;    ///< at the Gauss points
-    double smallest_jacobian; ///< det J over that of the mean of the cell, at Gauss points and
-                              ///< vertices
-    Point worst_place;        ///< centre of the cell that has it [mm]
+    double smallest_jacobian; ///< det J at the Gauss points over its mean in the cell
+    double
+          smallest_vertex_jacobian; ///< the same at the vertices: negative where an edge folds over
+    Point worst_place;              ///< centre of the cell that has it [mm]
   };
 
   /// Collective.

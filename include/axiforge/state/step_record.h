@@ -63,7 +63,9 @@ namespace axiforge
     double power_residual = 0;
 
     double largest_strain = 0, largest_strain_rate = 0;
-    double largest_radius = 0; ///< of the free and touching surface [mm]
+    double smallest_jacobian        = 0; ///< worst of the cells, 1: undistorted, at Gauss points
+    double smallest_vertex_jacobian = 0; ///< at vertices: negative where an edge folds on to a tool
+    double largest_radius           = 0; ///< of the free and touching surface [mm]
 
     unsigned int cells = 0, unknowns = 0, iterations = 0, set_changes = 0, repeats = 0;
     double       residual = 0, divergence = 0;
