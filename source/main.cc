@@ -64,7 +64,11 @@ int main(int argc, char **argv)
     }
   catch (const CLI::ParseError &error)
     {
-      return app.exit(error) == 0 ? 0 : bad_input;
+      if (error.get_exit_code() == 0) // --help or --version
+        return app.exit(error);
+      dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+      return report(std::string(error.what()) + ". axiforge --help tells what there is.",
+                    bad_input);
     }
 
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);

@@ -85,19 +85,28 @@ namespace axiforge::laws
       return { i, (x - axis[i]) / h, h, true };
     }
 
-    [[noreturn]] void fail(const CsvTable &csv, const std::string &line, const std::string &what)
+    /// What a message has to name.
+    struct Source
     {
-      throw InputError(fmt::format("File \"{}\", {}: {}.", csv.file, line, what));
+      std::string entry, file;
+    };
+
+    [[noreturn]] void fail(const Source &source, const std::string &line, const std::string &what)
+    {
+      throw InputError::entry(
+          source.entry, source.file, line + ": " + what, "",
+          "First row: a label, then the strain rates [1/s]; each further row: a "
+          "strain, then the stresses [MPa]");
     }
 
-    void check_rising(const CsvTable    &csv,
+    void check_rising(const Source      &source,
                       const std::string &line,
                       const char        *name,
                       const double       before,
                       const double       value)
     {
       if (value <= before)
-        fail(csv, line,
+        fail(source, line,
              fmt::format("the {} {} does not exceed the one before it, {}. Sort the table so that "
                          "the values rise, each given once",
                          name, value, before));
@@ -139,13 +148,14 @@ namespace axiforge::laws
   FlowStressTable FlowStressTable::read(const std::string &file_name, const std::string &entry)
   {
     const CsvTable csv = read_csv(file_name, entry);
+    const Source   source{ entry, file_name };
 
     // The corner's label decides whether read_csv() takes the first row for a header.
     const bool        has_label = !csv.header.empty();
     const std::string first =
         has_label ? std::string("first row") : fmt::format("line {}", csv.lines.at(0));
     if (csv.columns() < 2)
-      fail(csv, first, "it must hold a label and then at least one strain rate [1/s]");
+      fail(source, first, "it must hold a label and then at least one strain rate [1/s]");
 
     std::vector<double> rates;
     for (unsigned int j = 1; j < csv.columns(); ++j)
@@ -158,9 +168,9 @@ namespace axiforge::laws
                           "the rates",
                           csv.header[j]));
         if (!(rate > 0.))
-          fail(csv, first, fmt::format("the strain rate {} must be positive", rate));
+          fail(source, first, fmt::format("the strain rate {} must be positive", rate));
         if (!rates.empty())
-          check_rising(csv, first, "strain rate", rates.back(), rate);
+          check_rising(source, first, "strain rate", rates.back(), rate);
         rates.push_back(rate);
       }
 
@@ -170,21 +180,21 @@ namespace axiforge::laws
         const std::string line   = fmt::format("line {}", csv.lines[i]);
         const double      strain = csv.rows[i][0];
         if (strain < 0.)
-          fail(csv, line, fmt::format("the strain {} must not be negative", strain));
+          fail(source, line, fmt::format("the strain {} must not be negative", strain));
         if (!strains.empty())
-          check_rising(csv, line, "strain", strains.back(), strain);
+          check_rising(source, line, "strain", strains.back(), strain);
         strains.push_back(strain);
         for (unsigned int j = 1; j < csv.columns(); ++j)
           {
             stresses.push_back(csv.rows[i][j]);
             if (!(stresses.back() > 0.))
-              fail(csv, line,
+              fail(source, line,
                    fmt::format("the stress {} in column {} must be positive", stresses.back(),
                                j + 1));
           }
       }
     if (strains.size() < 2)
-      fail(csv, "end",
+      fail(source, "end",
            fmt::format("the table has {} row of stresses, but it needs at least 2 (give the same "
                        "stresses at two strains for a material that does not harden)",
                        strains.size()));

@@ -238,7 +238,8 @@ namespace axiforge::laws
           throw InputError::entry(entry, "", "Model = table needs a file",
                                   "the name of a CSV file");
         return FlowStressTable::read(
-            (std::filesystem::path(directory) / parameters.table_file).string(), entry);
+            (std::filesystem::path(directory) / parameters.table_file).lexically_normal().string(),
+            entry);
       }
 
     const bool               is_product = model.name == "product";

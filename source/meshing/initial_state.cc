@@ -33,6 +33,9 @@ namespace axiforge::meshing
       return found == mesh.boundary_ids.end() ? dealii::numbers::invalid_boundary_id
                                               : found->second;
     };
+    for (const auto &entry : mesh.boundary_ids)
+      if (entry.first != "axis" && entry.first != "symmetry" && entry.first != "surface")
+        outline.boundary_names.push_back(entry.first);
     std::set<unsigned int> vertices;
     for (const auto &edge : mesh.boundary_edges)
       if (edge.id != id_of("axis") && edge.id != id_of("symmetry"))
@@ -41,12 +44,14 @@ namespace axiforge::meshing
           vertices.insert(edge.v1);
           outline.boundary_points.push_back(
               middle.at({ std::min(edge.v0, edge.v1), std::max(edge.v0, edge.v1) }));
+          for (const std::string &name : outline.boundary_names)
+            if (edge.id == mesh.boundary_ids.at(name))
+              for (const Point &x : { outline.boundary_points.back(), mesh.vertices[edge.v0],
+                                      mesh.vertices[edge.v1] })
+                outline.named_points[name].push_back(x);
         }
     for (const unsigned int v : vertices)
       outline.boundary_points.push_back(mesh.vertices[v]);
-    for (const auto &entry : mesh.boundary_ids)
-      if (entry.first != "axis" && entry.first != "symmetry" && entry.first != "surface")
-        outline.boundary_names.push_back(entry.first);
     return outline;
   }
 

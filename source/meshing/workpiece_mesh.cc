@@ -95,11 +95,54 @@ namespace axiforge::meshing
       return n_found;
     }
 
+    /// Smallest sine of an angle of the quadrilaterals of the surfaces, negative if one is turned
+    /// in against the others of its element.
+    double smallest_corner_sine(const std::vector<int> &surfaces)
+    {
+      std::vector<std::size_t> tags;
+      std::vector<double>      x, parametric;
+      gmsh::model::mesh::getNodes(tags, x, parametric);
+      std::map<std::size_t, Point> nodes;
+      for (std::size_t i = 0; i < tags.size(); ++i)
+        nodes[tags[i]] = Point(x[3 * i], x[3 * i + 1]);
+
+      double smallest = 1;
+      for (const int surface : surfaces)
+        {
+          std::vector<std::size_t> elements, element_nodes;
+          const int                quadrilateral = 3; // gmsh's number of the type
+          gmsh::model::mesh::getElementsByType(quadrilateral, elements, element_nodes, surface);
+          for (std::size_t e = 0; e < elements.size(); ++e)
+            {
+              std::array<double, 4> sines;
+              double                sum = 0;
+              for (unsigned int v = 0; v < 4; ++v)
+                {
+                  const Point   corner = nodes.at(element_nodes[4 * e + v]);
+                  const Vector2 to     = nodes.at(element_nodes[4 * e + (v + 1) % 4]) - corner;
+                  const Vector2 from   = nodes.at(element_nodes[4 * e + (v + 3) % 4]) - corner;
+                  sines[v] = (to[0] * from[1] - to[1] * from[0]) / (to.norm() * from.norm());
+                  sum += sines[v];
+                }
+              for (const double sine : sines)
+                smallest = std::min(smallest, sum > 0 ? sine : -sine);
+            }
+        }
+      return smallest;
+    }
+
+    /// Mesh.Algorithm and Mesh.RecombinationAlgorithm to try when the first pair, 6 and 2 if the
+    /// file has no wishes, leaves triangles or bad elements.
+    constexpr std::array<std::array<int, 2>, 3> more_algorithms = {
+      { { { 6, 3 } }, { { 5, 2 } }, { { 5, 3 } } }
+    };
+
     /// The options a .geo may overwrite.
     void set_mesh_options()
     {
-      gmsh::option::setNumber("Mesh.Algorithm", 9);
-      gmsh::option::setNumber("Mesh.RecombinationAlgorithm", 3);
+      gmsh::option::setNumber("Mesh.Algorithm", 6);
+      gmsh::option::setNumber("Mesh.RecombinationAlgorithm", 2);
+      gmsh::option::setNumber("Mesh.Smoothing", 10);
       gmsh::option::setNumber("Mesh.RecombineAll", 1);
       gmsh::option::setNumber("Mesh.ElementOrder", 1);
       gmsh::option::setNumber("Mesh.SecondOrderLinear", 0);
@@ -126,10 +169,7 @@ namespace axiforge::meshing
       double algorithm = 0;
       gmsh::option::getNumber("Mesh.Algorithm", algorithm);
       if (algorithm == 8)
-        gmsh::option::setNumber("Mesh.Algorithm", algorithm = 9);
-      for (const int surface : surfaces) // a surface may have its own: 8 must not get through
-        gmsh::model::mesh::setAlgorithm(2, surface, static_cast<int>(algorithm));
-
+        gmsh::option::setNumber("Mesh.Algorithm", algorithm = 6);
       const double size = source.parameters.element_size;
       if (size > 0)
         {
@@ -139,19 +179,23 @@ namespace axiforge::meshing
           gmsh::option::setNumber("Mesh.MeshSizeMax", size);
         }
 
-      // gmsh shifts points at random by about 1e-10 of the size, with the C library's generator,
-      // and seeds that only once per process.
-      const auto generate = []() {
-        std::srand(1);
-        gmsh::model::mesh::generate(2);
-      };
+      double recombination = 0;
+      gmsh::option::getNumber("Mesh.RecombinationAlgorithm", recombination);
+      std::vector<std::pair<double, double>> attempts = { { algorithm, recombination } };
+      for (const auto &[other_algorithm, other_recombination] : more_algorithms)
+        attempts.emplace_back(other_algorithm, other_recombination);
+
       source.session.run("meshing the workpiece", [&]() {
-        generate();
-        if (count_non_quadrilaterals(surfaces) > 0)
+        for (const auto &[attempted_algorithm, attempted_recombination] : attempts)
           {
             gmsh::model::mesh::clear();
-            gmsh::option::setNumber("Mesh.RecombinationAlgorithm", 2);
-            generate();
+            gmsh::option::setNumber("Mesh.RecombinationAlgorithm", attempted_recombination);
+            for (const int surface : surfaces) // which may have its own: 8 must not get through
+              gmsh::model::mesh::setAlgorithm(2, surface, static_cast<int>(attempted_algorithm));
+            std::srand(1); // gmsh shifts points at random, and seeds only once per process
+            gmsh::model::mesh::generate(2);
+            if (count_non_quadrilaterals(surfaces) == 0 && smallest_corner_sine(surfaces) > 0.1)
+              break;
           }
         gmsh::model::mesh::setOrder(2);
       });

@@ -122,6 +122,7 @@ namespace axiforge::output
     flags.write_higher_order_cells = true;
     flags.time                     = state.time;
     flags.cycle                    = state.step;
+    flags.print_date_and_time      = false; // the same run gives the same bytes
     out.set_flags(flags);
     const auto add = [&](const Field &field, const std::string &first, const std::string &second) {
       out.add_data_vector(state.flow_dofs, field, std::vector<std::string>{ first, second },

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <iostream>
 #include <limits>
+#include <sstream>
 
 #include <deal.II/base/function_parser.h>
 
@@ -12,13 +14,50 @@ namespace axiforge::scene
   {
     constexpr unsigned int no_tool = static_cast<unsigned int>(-1);
 
+    /// deal.II's parser writes what it dislikes to std::cerr before it throws: this keeps the
+    /// words.
+    class KeptErrors
+    {
+    public:
+      KeptErrors()
+          : usual(std::cerr.rdbuf(said.rdbuf()))
+      {
+      }
+      KeptErrors(const KeptErrors &)            = delete;
+      KeptErrors &operator=(const KeptErrors &) = delete;
+      ~KeptErrors()
+      {
+        std::cerr.rdbuf(usual);
+      }
+
+      /// The sentence between "Message:  <" and the end of its line, in brackets.
+      std::string complaint() const
+      {
+        const std::string text  = said.str();
+        const std::size_t begin = text.find('<');
+        const std::size_t end   = text.find('\n', begin);
+        if (begin == std::string::npos || end == std::string::npos || end < begin + 3)
+          return "";
+        std::string sentence = text.substr(begin + 1, end - begin - 1);
+        while (!sentence.empty() && (sentence.back() == '>' || sentence.back() == '.'))
+          sentence.pop_back();
+        return " (" + sentence + ")";
+      }
+
+    private:
+      std::ostringstream said;
+      std::streambuf    *usual;
+    };
+
+
     /// An expression in r, z and t as a function; empty for 'free'.
     std::function<double(const Point &, double)> parse_expression(const std::string &entry,
                                                                   const std::string &text)
     {
       if (text == "free")
         return {};
-      auto function = std::make_shared<dealii::FunctionParser<2>>(1);
+      auto             function = std::make_shared<dealii::FunctionParser<2>>(1);
+      const KeptErrors errors;
       try
         {
           function->initialize("r,z,t", text, { { "pi", M_PI } }, true);
@@ -26,7 +65,8 @@ namespace axiforge::scene
         }
       catch (const std::exception &)
         {
-          throw InputError::entry(entry, text, "this is not an expression in r, z and t",
+          throw InputError::entry(entry, text,
+                                  "this is not an expression in r, z and t" + errors.complaint(),
                                   "'free', numbers, + - * / ^, sqrt, exp, log, sin, cos, pi",
                                   "For example \"0.5 * r / (r^2 + z^2)^1.5\"");
         }
@@ -34,6 +74,27 @@ namespace axiforge::scene
         function->set_time(time);
         return function->value(x);
       };
+    }
+
+
+    /// The largest magnitude of an expression at the start, on the part of the boundary it is for.
+    double largest_at_start(const std::string                                  &entry,
+                            const std::string                                  &text,
+                            const std::function<double(const Point &, double)> &function,
+                            const std::vector<Point>                           &points)
+    {
+      double largest = 0;
+      for (const Point &x : points)
+        {
+          const double value = function(x, 0);
+          if (!std::isfinite(value))
+            throw InputError::entry(
+                entry, text,
+                fmt::format("it is {} at r = {:.6g} mm, z = {:.6g} mm, t = 0", value, x[0], x[1]),
+                "an expression that is finite on the whole of this boundary");
+          largest = std::max(largest, std::abs(value));
+        }
+      return largest;
     }
 
 
@@ -59,19 +120,29 @@ namespace axiforge::scene
                                 layer_length) };
       tool.profile.orient(outline.boundary_points);
 
-      const double size = (outline.upper - outline.lower).norm();
+      // Which side is the tool's is a guess if the workpiece lies on both: say how far on each.
+      const double       size = (outline.upper - outline.lower).norm();
+      tools::Penetration behind, in_front;
       for (const Point &x : outline.boundary_points)
         {
           std::array<tools::Contact, 2> contacts;
-          if (tool.profile.find(x, 0, contacts) > 0 && contacts[0].gap < -1e-6 * size)
-            throw InputError(fmt::format(
-                "Tool \"{0}\" (entry \"{1}/Geometry file\" = \"{2}\") starts inside the workpiece: "
-                "at r = "
-                "{3:.6g} mm, z = {4:.6g} mm it reaches {5:.3g} mm deep. Allowed: a tool that "
-                "touches the "
-                "workpiece or stands off. Move the tool's geometry back, or the workpiece.",
-                parameters.name, section, parameters.geometry.file, x[0], x[1], -contacts[0].gap));
+          if (tool.profile.find(x, std::numeric_limits<double>::max(), contacts) == 0)
+            continue;
+          if (contacts[0].gap < behind.gap)
+            behind = { contacts[0].gap, x };
+          if (contacts[0].gap > in_front.gap)
+            in_front = { contacts[0].gap, x };
         }
+      if (behind.gap < -1e-6 * size)
+        throw InputError::entry(
+            section + "/Geometry file", parameters.geometry.file,
+            fmt::format("the tool starts inside the workpiece, which reaches {:.4g} mm behind the "
+                        "tool's profile at r = {:.6g} mm, z = {:.6g} mm and {:.4g} mm in front of "
+                        "it at r = {:.6g} mm, z = {:.6g} mm",
+                        -behind.gap, behind.place[0], behind.place[1], in_front.gap,
+                        in_front.place[0], in_front.place[1]),
+            "a tool that touches the workpiece or stands off",
+            "Move the tool's geometry back, or the workpiece");
       return tool;
     }
   } // namespace
@@ -113,17 +184,34 @@ namespace axiforge::scene
                   "both components of a velocity condition are free",
                   "an expression for at least one of them",
                   "Take the boundary out of \"Boundaries\" if it is a free surface");
-            for (const Point &x : outline.boundary_points)
-              for (const auto &component : condition.velocity)
-                if (component)
-                  characteristic_speed = std::max(characteristic_speed, std::abs(component(x, 0)));
+            if (boundary.pressure != BoundaryParameters().pressure)
+              throw InputError::entry(section + "/Pressure", boundary.pressure,
+                                      "it has no meaning with Type = velocity", "its default 0",
+                                      "Remove the entry, or set Type = pressure");
+            for (unsigned int c = 0; c < 2; ++c)
+              if (condition.velocity[c])
+                characteristic_speed =
+                    std::max(characteristic_speed,
+                             largest_at_start(section + (c == 0 ? "/Velocity r" : "/Velocity z"),
+                                              c == 0 ? boundary.velocity_r : boundary.velocity_z,
+                                              condition.velocity[c],
+                                              outline.named_points.at(boundary.name)));
           }
         else
           {
+            for (const bool axial : { false, true })
+              if ((axial ? boundary.velocity_z : boundary.velocity_r) != "free")
+                throw InputError::entry(section + (axial ? "/Velocity z" : "/Velocity r"),
+                                        axial ? boundary.velocity_z : boundary.velocity_r,
+                                        "it has no meaning with Type = pressure",
+                                        "its default free",
+                                        "Remove the entry, or set Type = velocity");
             condition.pressure = parse_expression(section + "/Pressure", boundary.pressure);
             if (!condition.pressure)
               throw InputError::entry(section + "/Pressure", boundary.pressure,
                                       "a pressure can't be free", "an expression in r, z and t");
+            largest_at_start(section + "/Pressure", boundary.pressure, condition.pressure,
+                             outline.named_points.at(boundary.name));
           }
         boundaries.push_back(condition);
       }
@@ -224,13 +312,13 @@ namespace axiforge::scene
             end_time_ = high;
           }
       }
-    for (const Tool &tool : tools)
-      if (tool.motion.end_time() < end_time_ * (1 - 1e-12))
-        throw InputError::entry("Tool " + tool.name + "/Motion/Table file", "",
-                                fmt::format("the table ends at {} s, before the run does at {} s",
-                                            tool.motion.end_time(), end_time_),
-                                "a table up to the end of the run",
-                                "Lengthen it or end the run earlier");
+    for (unsigned int i = 0; i < tools.size(); ++i)
+      if (tools[i].motion.end_time() < end_time_ * (1 - 1e-12))
+        throw InputError::entry(
+            "Tool " + tools[i].name + "/Motion/Table file", parameters.tools[i].motion.table_file,
+            fmt::format("the table ends at {} s, before the run does at {} s",
+                        tools[i].motion.end_time(), end_time_),
+            "a table up to the end of the run", "Lengthen it or end the run earlier");
   }
 
 

@@ -71,7 +71,9 @@ namespace axiforge::solvers
           throw ComputationError(
               "This Trilinos has no MUMPS (Amesos): run on one rank with cholmod.");
         Teuchos::ParameterList parameters;
-        parameters.set("PrintTiming", false);
+        // MUMPS estimates its memory before it pivots; contact and friction need more than the 20 %
+        // it adds by itself.
+        parameters.sublist("mumps").set("ICNTL(14)", 200);
         solver->SetParameters(parameters);
       }
 

@@ -111,8 +111,9 @@ namespace axiforge::tools
                                   [&](const Segment &s) { return !(s.length() > tolerance); }),
                    segments.end());
     if (segments.empty())
-      throw InputError(fmt::format("The profile of tool \"{}\" is empty: it has no curve of finite "
-                                   "length outside of the axis r = 0.",
+      throw InputError(fmt::format("{}: the tool's profile is empty: it has no curve of finite "
+                                   "length outside of the axis r = 0. A profile starts on the axis "
+                                   "or beside it and leads away from it.",
                                    name));
 
     std::vector<Point> points;
@@ -133,7 +134,7 @@ namespace axiforge::tools
     for (unsigned int v = 0; v < points.size(); ++v)
       if (at_vertex[v].size() > 2)
         throw InputError(fmt::format(
-            "The profile of tool \"{}\" branches: {} curves meet at r = {:.6g}, z = {:.6g} mm "
+            "{}: the tool's profile branches: {} curves meet at r = {:.6g}, z = {:.6g} mm "
             "where at "
             "most two may. Leave inner lines and double curves out of its physical group.",
             name, at_vertex[v].size(), points[v][0], points[v][1]));
@@ -335,7 +336,7 @@ namespace axiforge::tools
           sum += vote(chain, x, weighting_distance);
         if (!(std::abs(sum) * weighting_distance > 1e-12))
           throw InputError(fmt::format(
-              "Tool \"{}\": the workpiece does not tell which side of the tool's curve from r = "
+              "{}: the workpiece does not tell which side of the tool's curve from r = "
               "{:.6g}, "
               "z = {:.6g} mm to r = {:.6g}, z = {:.6g} mm is the outside. Place the tool so that "
               "the "

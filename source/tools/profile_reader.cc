@@ -249,7 +249,7 @@ namespace axiforge::tools
     for (std::size_t i = 1; i < points.size(); ++i)
       if (!on_axis({ points[i - 1], points[i] }, box.size()))
         segments.push_back(Segment::line(points[i - 1], points[i]));
-    return Profile(std::move(segments), section);
+    return Profile(std::move(segments), fmt::format("Entry \"{}\" = \"{}\"", entry, file));
   }
 
   Profile read_profile_gmsh(const std::string    &file,
@@ -288,7 +288,7 @@ namespace axiforge::tools
         else
           add_curve(Curve(tag, entry, file), segments);
     });
-    return Profile(std::move(segments), section);
+    return Profile(std::move(segments), fmt::format("Entry \"{}\" = \"{}\"", entry, file));
   }
 
   Profile read_profile(const GeometryParameters &parameters,

@@ -97,7 +97,7 @@ namespace axiforge::scene
   struct ToolParameters
   {
     std::string              name;
-    GeometryParameters   geometry;
+    GeometryParameters       geometry;
     tools::MotionParameters  motion;
     laws::FrictionParameters friction;
 
@@ -123,7 +123,7 @@ namespace axiforge::scene
     explicit SceneParameters(const ParameterFile &file);
 
     std::string                     title;
-    GeometryParameters     workpiece;
+    GeometryParameters              workpiece;
     laws::MaterialParameters        material;
     std::vector<ToolParameters>     tools;
     std::vector<BoundaryParameters> boundaries;
@@ -149,6 +149,8 @@ namespace axiforge::scene
     std::vector<Point>       boundary_points; ///< of the surface that can touch tools
     std::vector<std::string> boundary_names;
     Point                    lower, upper; ///< bounding box [mm]
+    /// Points of each part of the boundary that has a name of its own.
+    std::map<std::string, std::vector<Point>> named_points;
   };
 
   struct Tool
