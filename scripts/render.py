@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Picture of a run: fields in the meridian section with tools and mesh, or the force against the stroke.
+"""Picture of a run: a field in the meridian section with tools and mesh, with what stands along it.
 
-    scripts/render.py RESULTS [--field strain] [--step LAST] [--output picture.png]
-    scripts/render.py RESULTS --history [--output picture.png]
+    scripts/render.py RESULTS [--field strain] [--range LOW HIGH] [--step LAST] [--symmetry]
+    scripts/render.py RESULTS --force      the field and the forces against the stroke below it
+    scripts/render.py RESULTS --contact    the field and the traction along the tools below it
+    scripts/render.py RESULTS --history    the forces alone
 
-RESULTS is the folder of a run. Needs matplotlib and numpy (Debian: python3-matplotlib); the program
-itself does not.
+RESULTS is the folder of a run. --symmetry draws the part below the symmetry plane z = 0 as well. The
+colours span the middle 99 % of the values unless --range says otherwise. Needs matplotlib and numpy
+(Debian: python3-matplotlib); the program itself does not.
 """
 import argparse
 import base64
@@ -22,11 +25,14 @@ try:
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
     from matplotlib.collections import LineCollection
-    from matplotlib.tri import Triangulation
+    from matplotlib.ticker import MaxNLocator, ScalarFormatter
+    from matplotlib.tri import Triangulation as MeshTriangulation
     import numpy as np
+    from PIL import Image
 except ImportError:
     sys.exit("render.py needs matplotlib and numpy: apt-get install python3-matplotlib")
 
+LABELS = {"strain": "effective strain", "strain_rate": "effective strain rate [1/s]", "velocity": "speed [mm/s]"}
 TYPES = {"Float32": "<f4", "Float64": "<f8", "Int32": "<i4", "Int64": "<i8", "UInt8": "<u1"}
 
 
@@ -67,84 +73,191 @@ def read_vtu(path):
     return np.concatenate(points), cells, {k: np.concatenate(v) for k, v in fields.items()}
 
 
-def draw_fields(folder, field, step, output):
+def field_file(folder, step):
+    """The last file of fields, or the last one up to a step."""
     files = sorted((folder / "fields").glob("workpiece_*.vtu"))
     if not files:
         sys.exit(f"{folder}: no fields (Output/Fields = none?)")
     if step is not None:
         files = [f for f in files if int(f.stem.split("_")[1]) <= step] or files[:1]
-    path = files[-1]
-    points, cells, fields = read_vtu(path)
-    if field not in fields:
-        sys.exit(f"{path.name} has no field {field}: it has {', '.join(fields)}")
-    values = fields[field]
-    values = np.hypot(values[:, 0], values[:, 1]) if values.shape[1] > 1 else values[:, 0]
+    return files[-1]
 
-    # Q2 Lagrange quadrilaterals: 4 vertices, mid-sides (bottom, right, top, left), centre.
+
+def lines_of_tools(path):
+    """Outlines of the tools, as arrays of (r, z)."""
+    path = path.with_name(path.name.replace("workpiece", "tools"))
+    if not path.exists():
+        return []
+    points, lines, _ = read_vtu(path)
+    return [points[line, :2] for line in lines]
+
+
+def split_cells(points, cells):
+    """Triangles, and the curved edges of the cells as polylines, of Q2 Lagrange quadrilaterals: 4
+    vertices, mid-sides (bottom, right, top, left), centre."""
     triangles, edges = [], []
+    s = np.linspace(-1, 1, 7)[:, None]
     for c in cells:
         for a, b in ((0, 4), (4, 1), (1, 5), (5, 2), (2, 6), (6, 3), (3, 7), (7, 0)):
             triangles.append((c[a], c[b], c[8]))
-        for a, m, b in ((0, 4, 1), (1, 5, 2), (2, 6, 3), (3, 7, 0)):
-            s = np.linspace(-1, 1, 7)[:, None]
-            edges.append(
-                0.5 * s * (s - 1) * points[c[a], :2]
-                + (1 - s * s) * points[c[m], :2]
-                + 0.5 * s * (s + 1) * points[c[b], :2]
-            )
-    figure, axes = plt.subplots(figsize=(9, 6))
-    mesh = Triangulation(points[:, 0], points[:, 1], triangles)
-    low, high = values.min(), max(values.max(), values.min() + 1e-12)
-    levels = np.linspace(low, high, 33)
-    picture = axes.tricontourf(mesh, values, levels, cmap="turbo")
-    mirrored = Triangulation(-points[:, 0], points[:, 1], np.array(triangles)[:, ::-1])
-    axes.tricontourf(mirrored, values, levels, cmap="turbo")
-    axes.add_collection(LineCollection(edges, colors="black", linewidths=0.35))
+        for a, m, b in ((0, 4, 1), (1, 5, 2), (3, 6, 2), (0, 7, 3)):
+            x = points[[c[a], c[m], c[b]], :2]
+            edges.append(0.5 * s * (s - 1) * x[0] + (1 - s * s) * x[1] + 0.5 * s * (s + 1) * x[2])
+    return np.array(triangles), edges
 
-    tools = path.with_name(path.name.replace("workpiece", "tools"))
-    width, bottom, top = 1.25 * points[:, 0].max(), points[:, 1].min(), points[:, 1].max()
-    if tools.exists():
-        x, lines, _ = read_vtu(tools)
-        for line in lines:
-            for sign in (1, -1):
-                axes.plot(sign * x[line, 0], x[line, 1], color="dimgray", linewidth=2.5)
-    axes.set_xlim(-width, width)
-    axes.set_ylim(bottom - 0.06 * (top - bottom), top + 0.15 * (top - bottom))
+
+def draw_tool(axes, line, middle, far, signs):
+    """An outline, and the body behind it where the outline begins on the axis."""
+    for sign_r, sign_z in signs:
+        x = line * (sign_r, sign_z)
+        axes.plot(x[:, 0], x[:, 1], color="0.25", linewidth=1.6, zorder=4)
+        if abs(line[0, 0]) < 1e-6 or abs(line[-1, 0]) < 1e-6:
+            z = sign_z * (far if line[:, 1].mean() > middle else -far)
+            behind = np.array([(x[-1, 0], z), (x[0, 0], z)])
+            axes.fill(*np.concatenate([x, behind]).T, color="0.82", zorder=0, linewidth=0)
+
+
+def draw_section(figure, axes, path, arguments):
+    points, cells, fields = read_vtu(path)
+    name = arguments.field
+    if name not in fields:
+        sys.exit(f"{path.name} has no field {name}: it has {', '.join(fields)}")
+    values = fields[name]
+    values = np.hypot(values[:, 0], values[:, 1]) if values.shape[1] > 1 else values[:, 0]
+    low, high = arguments.range or np.percentile(values, (0.5, 99.5))
+    if not high > low:
+        high = low + max(1e-9, 1e-6 * abs(low))
+    levels = np.linspace(low, high, 41)
+
+    triangles, edges = split_cells(points, cells)
+    signs = [(1, 1), (-1, 1)] + ([(1, -1), (-1, -1)] if arguments.symmetry else [])
+    for sign in signs:
+        mesh = MeshTriangulation(points[:, 0] * sign[0], points[:, 1] * sign[1], triangles)
+        picture = axes.tricontourf(mesh, values, levels, cmap="turbo", extend="both", zorder=1)
+        if sign[0] > 0:
+            mirrored = [edge * sign for edge in edges]
+            axes.add_collection(LineCollection(mirrored, colors="black", linewidths=0.3, alpha=0.7, zorder=2))
+    axes.axvline(0, color="white", linewidth=0.8, linestyle=(0, (8, 3, 2, 3)), zorder=3)
+
+    r, (bottom, top) = points[:, 0].max(), (points[:, 1].min(), points[:, 1].max())
+    for line in lines_of_tools(path):
+        draw_tool(axes, line, 0.5 * (bottom + top), 1e3 * r, signs)
+    if arguments.symmetry:
+        bottom = -top
+    margin = 0.12 * (top - bottom)
+    axes.set_xlim(-1.2 * r, 1.2 * r)
+    axes.set_ylim(bottom - margin, top + margin)
     axes.set_aspect("equal")
     axes.set_xlabel("r [mm]")
     axes.set_ylabel("z [mm]")
-    figure.colorbar(picture, ax=axes, label=field.replace("_", " "), shrink=0.8)
-    figure.savefig(output, dpi=110, bbox_inches="tight")
+    bar = figure.colorbar(picture, ax=axes, fraction=0.05, pad=0.02, aspect=16)
+    bar.set_label(LABELS.get(name, name.replace("_", " ") + " [MPa]"))
+    bar.set_ticks([tick for tick in MaxNLocator(7).tick_values(low, high) if low <= tick <= high])
+    bar.ax.yaxis.set_major_formatter(ScalarFormatter())
+    return (1.2 * 2 * r) / (top - bottom + 2 * margin)
 
 
-def draw_history(folder, output):
+def read_history(folder):
+    """Rows of the history, and the names of the tools in it."""
     with open(folder / "history.csv", newline="", encoding="ascii") as stream:
         rows = list(csv.DictReader(stream))
-    stroke = [float(r["stroke_mm"]) for r in rows]
-    figure, axes = plt.subplots(figsize=(7, 4.5))
-    for name in rows[0]:
-        if name.startswith("force_"):
-            axes.plot(stroke, [float(r[name]) / 1e3 for r in rows], label=name[6:-2])
-    axes.set_xlabel("stroke [mm]")
-    axes.set_ylabel("force [kN]")
+    if not rows:
+        sys.exit(f"{folder}: the history has no step")
+    return rows, [name[15:-3] for name in rows[0] if name.startswith("contact_radius_")]
+
+
+def draw_forces(axes, folder):
+    rows, tools = read_history(folder)
+    if tools:
+        stroke = [float(r["stroke_mm"]) for r in rows]
+        for tool in tools:
+            axes.plot(stroke, [float(r[f"force_{tool}_N"]) / 1e3 for r in rows], label=tool)
+        axes.set_xlabel("stroke [mm]")
+        axes.set_ylabel("force [kN]")
+    else:
+        for name in rows[0]:
+            if name.startswith("pressure_"):
+                time = [float(r["time_s"]) - 0.5 * float(r["time_step_s"]) for r in rows]
+                axes.plot(time, [float(r[name]) for r in rows], label=name[9:-4])
+        axes.set_xlabel("time [s]")
+        axes.set_ylabel("pressure [MPa]")
+    axes.set_ylim(0, 1.05 * axes.dataLim.y1)
     axes.grid(alpha=0.3)
-    axes.legend()
-    figure.savefig(output, dpi=110, bbox_inches="tight")
+    axes.legend(frameon=False)
+
+
+def draw_tractions(axes, path, names):
+    """Contact pressure and friction traction of the nodes that touch, against the radius. Nodes that
+    belong to different tools are told apart by which outline is nearer."""
+    points, _, fields = read_vtu(path)
+    touching = np.flatnonzero(np.abs(fields["contact_pressure"][:, 0]) > 0)
+    _, first = np.unique(points[touching].round(9), axis=0, return_index=True)
+    touching = touching[first]
+    lines = lines_of_tools(path)
+    if not lines or not len(touching):
+        sys.exit(f"{path.name}: nothing touches a tool")
+
+    def distance(x, line):
+        a, d = line[:-1], np.diff(line, axis=0)
+        t = np.clip(((x - a) * d).sum(1) / np.maximum((d * d).sum(1), 1e-300), 0, 1)
+        return np.hypot(*(a + t[:, None] * d - x).T).min()
+
+    nearest = np.array([np.argmin([distance(points[i, :2], line) for line in lines]) for i in touching])
+    for tool in range(len(lines)):
+        nodes = touching[nearest == tool]
+        nodes = nodes[np.argsort(points[nodes, 0])]
+        if not len(nodes):
+            continue
+        suffix = f", {names[tool]}" if len(names) == len(lines) > 1 else ""
+        line = axes.plot(points[nodes, 0], fields["contact_pressure"][nodes, 0], ".-", label="pressure" + suffix)
+        axes.plot(points[nodes, 0], fields["friction_traction"][nodes, 0], "--", color=line[0].get_color(),
+                  label="friction" + suffix)
+    axes.set_xlabel("r [mm]")
+    axes.set_ylabel("traction [MPa]")
+    axes.grid(alpha=0.3)
+    axes.legend(frameon=False)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("results", type=pathlib.Path)
     parser.add_argument("--field", default="strain")
+    parser.add_argument("--range", type=float, nargs=2, metavar=("LOW", "HIGH"))
     parser.add_argument("--step", type=int, help="the last fields written up to this step")
-    parser.add_argument("--history", action="store_true", help="force against stroke")
+    parser.add_argument("--symmetry", action="store_true", help="draw the part below z = 0 as well")
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument("--force", action="store_true", help="forces against the stroke below the field")
+    what.add_argument("--contact", action="store_true", help="tractions along the tools below the field")
+    what.add_argument("--history", action="store_true", help="forces against the stroke alone")
     parser.add_argument("--output", type=pathlib.Path)
     arguments = parser.parse_args()
     output = arguments.output or arguments.results / ("history.png" if arguments.history else "fields.png")
+
+    plt.rcParams.update({"font.size": 9, "axes.linewidth": 0.8})
     if arguments.history:
-        draw_history(arguments.results, output)
+        figure, axes = plt.subplots(figsize=(7, 4.2), layout="constrained")
+        draw_forces(axes, arguments.results)
     else:
-        draw_fields(arguments.results, arguments.field, arguments.step, output)
+        path = field_file(arguments.results, arguments.step)
+        below = arguments.force or arguments.contact
+        figure = plt.figure(figsize=(8, 6), layout="constrained")
+        figure.get_layout_engine().set(h_pad=0.08)
+        grid = figure.add_gridspec(2 if below else 1, 1, height_ratios=[1, 0.01] if below else [1])
+        aspect = draw_section(figure, figure.add_subplot(grid[0]), path, arguments)
+        height = min(max(6.6 / aspect, 1.8), 5)
+        if below:
+            grid.set_height_ratios([height, 2.2])
+            axes = figure.add_subplot(grid[1])
+            if arguments.force:
+                draw_forces(axes, arguments.results)
+            else:
+                draw_tractions(axes, path, read_history(arguments.results)[1])
+        figure.set_size_inches(8, height + 0.5 + (2.4 if below else 0))
+    figure.savefig(output, dpi=100, bbox_inches="tight")
+    if output.suffix == ".png":  # 256 colours do, and take a third of the space
+        with Image.open(output) as picture:
+            few = picture.convert("RGB").quantize(256, dither=Image.Dither.NONE)
+        few.save(output, optimize=True)
     print(output)
 
 

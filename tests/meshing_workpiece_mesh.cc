@@ -399,8 +399,8 @@ TEST_F(Files, AHubIsMeshedWithGoodQuadrilaterals)
           worst = std::min(worst, smallest / largest);
         }
       EXPECT_GT(worst, 0.1) << size;
-      EXPECT_GT(mesh.cells.size(), 0.8 * 515 / (size * size)); // the section has 515 mm^2
-      EXPECT_LT(mesh.cells.size(), 2. * 515 / (size * size));
+      EXPECT_GT(mesh.cells.size(), 410 / (size * size)); // the section has 410 mm^2
+      EXPECT_LT(mesh.cells.size(), 4 * 410 / (size * size));
     }
 }
 

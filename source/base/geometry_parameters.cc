@@ -33,7 +33,9 @@ namespace axiforge
         "boundary conditions.");
     prm.add_parameter(
         "Element size", element_size,
-        "Edge length of the elements [mm]. 0 (default): as the file says, so that a structured "
+        "Edge length of the elements [mm] that gmsh aims at; where the section is narrow they come "
+        "out "
+        "down to half as long. 0 (default): as the file says, so that a structured "
         "(transfinite) .geo and a .msh are taken as they are. No effect on these two.",
         dealii::Patterns::Double(0.));
     prm.add_parameter("Refinement levels", refinement_levels,

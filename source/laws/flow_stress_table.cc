@@ -163,7 +163,7 @@ namespace axiforge::laws
         double rate = has_label ? 0. : csv.rows[0][j];
         if (has_label && !parse_number(csv.header[j], rate))
           fail(
-              csv, first,
+              source, first,
               fmt::format("\"{}\" is not a strain rate [1/s]: the first row holds a label and then "
                           "the rates",
                           csv.header[j]));

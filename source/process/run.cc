@@ -134,8 +134,9 @@ namespace axiforge::process
           std::cout << parameters.print();
         return;
       }
-    const meshing::WorkpieceMesh mesh =
+    meshing::WorkpieceMesh mesh =
         meshing::read_workpiece(parameters.workpiece, "Workpiece", parameters.directory);
+    meshing::share_from_first_rank(mesh, communicator);
     const scene::Scene scene(parameters, meshing::outline_of(mesh));
     if (scene.flow.linear_solver == "cholmod" &&
         dealii::Utilities::MPI::n_mpi_processes(communicator) > 1)

@@ -108,10 +108,12 @@ namespace axiforge::process
   {
     double       time_step = wanted;
     unsigned int repeats = 0, iterations = 0;
+    StepTimes    times;
     for (;;)
       {
         solvers::FlowResult result = solver.solve(time_step);
         iterations += result.record.iterations;
+        times.add(result.record.times);
         if (result.converged)
           {
             // Try the step on a copy of the position: a cell that turns over takes it back.
@@ -135,11 +137,12 @@ namespace axiforge::process
                 record.largest_radius           = size.largest_radius;
                 record.smallest_jacobian        = size.smallest_jacobian;
                 record.smallest_vertex_jacobian = size.smallest_vertex_jacobian;
-                record.largest_strain           = measure(state).largest_strain;
+                record.largest_strain           = largest_strain(state);
                 record.cells                    = state.tables.n_global_cells;
                 record.unknowns                 = state.n_unknowns();
                 record.repeats                  = repeats;
                 record.iterations               = iterations;
+                record.times                    = times;
                 return record;
               }
             result.failure = fmt::format("a cell near r = {:.4g} mm, z = {:.4g} mm turns over",
@@ -148,16 +151,17 @@ namespace axiforge::process
         ++repeats;
         time_step /= 2;
         if (time_step < scene.time.smallest_step * wanted || repeats > 40)
-          throw ComputationError(fmt::format(
-              "The run can't go on at time {:.6g} s, stroke {:.6g} mm, step {}: {}. The step was "
-              "repeated {} "
-              "times, down to {:.3g} s. If a cell turns over, the mesh is used up there: take a "
-              "finer or a "
-              "graded mesh, less friction or a more rate-sensitive material; if the iterations do "
-              "not "
-              "converge, raise \"Flow solver/Most iterations\" or \"Flow solver/Regularisation\".",
-              state.time, scene.stroke(state.time), state.step + 1, result.failure, repeats,
-              2 * time_step));
+          throw ComputationError(fmt::format("The run can't go on at time {:.6g} s, stroke {:.6g} "
+                                             "mm, step {}: {}. The step was repeated "
+                                             "{} times, down to {:.3g} s. If a cell turns over, "
+                                             "the mesh is used up there: take a finer or "
+                                             "a graded mesh, less friction or a more "
+                                             "rate-sensitive material. If the iterations do not "
+                                             "converge, raise \"Flow solver/Most iterations\" or "
+                                             "\"Flow solver/Regularisation\"; a "
+                                             "closed die that is full can't be closed further.",
+                                             state.time, scene.stroke(state.time), state.step + 1,
+                                             result.failure, repeats, 2 * time_step));
       }
   }
 } // namespace axiforge::process

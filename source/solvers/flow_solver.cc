@@ -129,7 +129,7 @@ namespace axiforge::solvers
     failure.clear();
 
     bool                move_dual = false;
-    unsigned int        passes = 0, last_reset = 0, stalled = 0;
+    unsigned int        passes = 0, stalled = 0;
     std::vector<double> residuals;
     for (unsigned int iteration = 0;; ++iteration)
       {
@@ -198,11 +198,11 @@ namespace axiforge::solvers
 
         // A limit cycle of the dual variables: start them again.
         residuals.push_back(std::max(norms.residual, norms.divergence));
-        stalled = changes > 0 ? 0 : stalled + 1;
-        if (scene.flow.newton() && stalled > 4 && iteration >= last_reset + 4 &&
-            residuals[iteration] > 0.7 * residuals[iteration - 4])
+        stalled = changes > 0 || residuals.size() == 1 ? 0 : stalled + 1;
+        if (scene.flow.newton() && stalled > 4 &&
+            residuals.back() > 0.7 * residuals[residuals.size() - 5])
           {
-            last_reset = iteration;
+            stalled = 0;
             for (FlowPoint &point : points)
               std::fill_n(point.stress, 4, 0.);
             friction->reset_dual();

@@ -89,9 +89,6 @@ namespace axiforge
             result.smallest_jacobian = scaled;
             result.worst_place       = Point(x[8][0], x[8][1]);
           }
-        const double *strain = state.strain.begin() + state.tables.first_strain_dof[cell];
-        result.largest_strain =
-            std::max(result.largest_strain, *std::max_element(strain, strain + 9));
       }
     for (unsigned int e = 0; e < state.tables.edges.size(); ++e)
       if (const BoundaryEdge &edge = state.tables.edges[e]; edge.owned)
@@ -107,12 +104,20 @@ namespace axiforge
     result.largest_radius           = MPI::max(result.largest_radius, comm);
     result.lowest                   = MPI::min(result.lowest, comm);
     result.highest                  = MPI::max(result.highest, comm);
-    result.largest_strain           = MPI::max(result.largest_strain, comm);
     result.smallest_jacobian        = MPI::min(mine, comm);
     result.smallest_vertex_jacobian = MPI::min(result.smallest_vertex_jacobian, comm);
     for (unsigned int c = 0; c < 2; ++c)
       result.worst_place[c] =
           MPI::max(mine == result.smallest_jacobian ? result.worst_place[c] : -1e300, comm);
     return result;
+  }
+
+
+  double largest_strain(const State &state)
+  {
+    double largest = 0;
+    for (std::size_t i = 0; i < state.strain.locally_owned_size(); ++i)
+      largest = std::max(largest, state.strain.local_element(i));
+    return dealii::Utilities::MPI::max(largest, state.communicator);
   }
 } // namespace axiforge

@@ -11,7 +11,6 @@ namespace axiforge
     double volume;            ///< [mm^3], exact for the Q2 geometry
     double largest_radius;    ///< [mm], on the Q2 edges of the surface, not only at nodes
     double lowest, highest;   ///< z [mm]
-    double largest_strain;    ///< at the Gauss points
     double smallest_jacobian; ///< det J at the Gauss points over its mean in the cell
     double
           smallest_vertex_jacobian; ///< the same at the vertices: negative where an edge folds over
@@ -20,4 +19,7 @@ namespace axiforge
 
   /// Collective.
   Measures measure(const State &state);
+
+  /// Largest effective strain at the Gauss points. Collective.
+  double largest_strain(const State &state);
 } // namespace axiforge
