@@ -3,25 +3,14 @@
 
 #include <CLI/CLI.hpp>
 #include <axiforge_revision.h>
-#include <dlfcn.h>
 
+#include <axiforge/base/blas.h>
 #include <axiforge/base/errors.h>
 #include <axiforge/process/run.h>
 
 namespace
 {
   constexpr int bad_input = 1, can_not_go_on = 2, other_failure = 3;
-
-  /// OpenBLAS takes all cores by default: too many for small fronts, and several ranks would fight.
-  void one_blas_thread()
-  {
-    if (std::getenv("OPENBLAS_NUM_THREADS"))
-      return;
-    using Setter = void (*)(int);
-    if (const auto set = reinterpret_cast<Setter>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads")))
-      set(1);
-  }
-
 
   /// One message, from one rank; the others have met the same.
   int report(const std::string &message, const int status)
@@ -66,13 +55,15 @@ int main(int argc, char **argv)
     {
       if (error.get_exit_code() == 0) // --help or --version
         return app.exit(error);
+      if (!options.validate && !options.print_parameters)
+        axiforge::restart_with_suitable_blas(argv);
       dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
       return report(std::string(error.what()) + ". axiforge --help tells what there is.",
                     bad_input);
     }
 
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  one_blas_thread();
+  axiforge::use_one_thread();
   try
     {
       axiforge::process::run(options, MPI_COMM_WORLD);

@@ -16,8 +16,8 @@ namespace
   Entries cylinder(const std::string &scheme, const Entries &friction, const unsigned int cells = 4)
   {
     return Entries{ "Tools = upper", "Process/End time = 1e9", "Time stepping/Time step = 1",
-                    "Time stepping/Scheme = " + scheme, "Flow solver/Tolerance = 1e-11" } +
-           swift_power(100, 0.01, 0.2, 0.1) +
+                    "Time stepping/Scheme = " + scheme, "Flow solver/Tolerance = 1e-10" } +
+           swift_power(100, 0.2, 0.3, 0.1) +
            workpiece(geometry("cylinder.geo"),
                      fmt::format("RadialCells = {0}, AxialCells = {0}", cells)) +
            platen("upper", half_height, -speed, friction);
@@ -44,7 +44,7 @@ namespace
         EXPECT_EQ(record.set_changes, 0u);
         EXPECT_EQ(record.repeats, 0u);
       }
-    const auto at_end = problem.solver().solve(1e-3 * dt);
+    const auto at_end = problem.solver().solve(0.005); // the same after all steps
     if (!at_end.converged)
       throw std::runtime_error(at_end.failure);
     Answer answer{ at_end.record.tools[0].force, record.largest_radius, {},
@@ -89,7 +89,7 @@ class Friction : public ::testing::TestWithParam<Entries>
 
 TEST_P(Friction, MidpointIsOfSecondOrder)
 {
-  const auto order = temporal_orders(cylinder("midpoint", GetParam()), 0.1, 16); // 2.5 % each and finer
+  const auto order = temporal_orders(cylinder("midpoint", GetParam()), 0.1, 4); // 2.5 % each and finer
   EXPECT_GE(order[0], 1.9) << "force";
   EXPECT_GE(order[1], 1.9) << "radius";
   EXPECT_GE(order[2], 1.9) << "shape";

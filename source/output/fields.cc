@@ -123,6 +123,7 @@ namespace axiforge::output
     flags.time                     = state.time;
     flags.cycle                    = state.step;
     flags.print_date_and_time      = false; // the same run gives the same bytes
+    flags.compression_level        = DataOutBase::VtkFlags::best_speed;
     out.set_flags(flags);
     const auto add = [&](const Field &field, const std::string &first, const std::string &second) {
       out.add_data_vector(state.flow_dofs, field, std::vector<std::string>{ first, second },

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <cstdlib>
+#include <cstring>
+
+#include <dlfcn.h>
+#include <unistd.h>
+
+#include <axiforge/base/blas.h>
+
+namespace axiforge
+{
+  namespace
+  {
+    /// A function of a library that may not be there.
+    template <typename Function> Function *find_function(const char *name)
+    {
+      return reinterpret_cast<Function *>(dlsym(RTLD_DEFAULT, name));
+    }
+  } // namespace
+
+
+  void restart_with_suitable_blas(char **argv)
+  {
+#if defined(__x86_64__) && defined(__GNUC__)
+    const auto core_name = find_function<char *()>("openblas_get_corename");
+    if (std::getenv("OPENBLAS_CORETYPE") || !core_name || std::strcmp(core_name(), "Prescott") != 0)
+      return;
+    const char *core = nullptr;
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+        __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl"))
+      core = "SkylakeX";
+    else if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+      core = "Haswell";
+    if (core)
+      {
+        setenv("OPENBLAS_CORETYPE", core, 1); // which also keeps us from coming here again
+        execv("/proc/self/exe", argv);
+      }
+#else
+    (void)argv;
+#endif
+  }
+
+
+  void use_one_thread()
+  {
+    if (!std::getenv("OPENBLAS_NUM_THREADS"))
+      if (const auto set = find_function<void(int)>("openblas_set_num_threads"))
+        set(1);
+    // CHOLMOD asks for four threads in so many words; no active level of parallelism stops it.
+    if (!std::getenv("OMP_NUM_THREADS"))
+      if (const auto set = find_function<void(int)>("omp_set_max_active_levels"))
+        set(0);
+  }
+} // namespace axiforge
