@@ -47,8 +47,7 @@ namespace axiforge::testing_support
   public:
     TemporaryFolder()
     {
-      std::string name =
-          (std::filesystem::temp_directory_path() / "axiforge_test_XXXXXX").string();
+      std::string name = (std::filesystem::temp_directory_path() / "axiforge_test_XXXXXX").string();
       if (!::mkdtemp(name.data()))
         throw std::runtime_error("no temporary folder");
       path = name;
@@ -88,14 +87,12 @@ namespace axiforge::testing_support
                         const double       radius   = 200)
   {
     const std::string section = "Tool " + name;
-    Entries           entries = {
-                section + "/Geometry file = " + geometry("platen.geo"),
-                section + "/Geometry parameters = Z = " + number(z) + ", Radius = " + number(radius)
-    };
+    Entries           entries = { section + "/Geometry file = " + geometry("platen.geo"),
+                                  section + "/Geometry parameters = Z = " + number(z) +
+                                      ", Radius = " + number(radius) };
     if (v != 0)
-      entries =
-          entries + Entries{ section + "/Motion/Type = constant velocity",
-                             section + "/Motion/Velocity = 0, " + number(v) };
+      entries = entries + Entries{ section + "/Motion/Type = constant velocity",
+                                   section + "/Motion/Velocity = 0, " + number(v) };
     for (const std::string &entry : friction)
       entries.push_back(section + "/Friction/" + entry);
     return entries;
@@ -103,7 +100,8 @@ namespace axiforge::testing_support
 
   inline Entries perfectly_plastic(const double yield_stress)
   {
-    return { "Material/Model = perfectly plastic", "Material/Yield stress = " + number(yield_stress) };
+    return { "Material/Model = perfectly plastic",
+             "Material/Yield stress = " + number(yield_stress) };
   }
 
   /// sigma = C epsdot^n
@@ -117,15 +115,13 @@ namespace axiforge::testing_support
   inline Entries
   swift_power(const double strength, const double prestrain, const double n, const double m)
   {
-    Entries entries = { "Material/Model = product",
-                        "Material/Hardening = swift",
+    Entries entries = { "Material/Model = product", "Material/Hardening = swift",
                         "Material/Strength coefficient = " + number(strength),
                         "Material/Prestrain = " + number(prestrain),
                         "Material/Hardening exponent = " + number(n) };
     if (m > 0)
-      entries =
-          entries + Entries{ "Material/Rate sensitivity = power",
-                             "Material/Rate exponent = " + number(m) };
+      entries = entries + Entries{ "Material/Rate sensitivity = power",
+                                   "Material/Rate exponent = " + number(m) };
     return entries;
   }
 
@@ -262,13 +258,13 @@ namespace axiforge::testing_support
    * configuration of state.position. The velocity is integrated with 5 x 5 Gauss points, so that
    * no superconvergence at the solver's own points flatters it; the mean stress is there only.
    */
-  inline FlowErrors flow_errors(const State                                     &state,
-                                const solvers::FlowResult                       &result,
+  inline FlowErrors flow_errors(const State                                   &state,
+                                const solvers::FlowResult                     &result,
                                 const std::function<ExactFlow(const Point &)> &exact,
-                                const bool                                       with_stress = true)
+                                const bool                                     with_stress = true)
   {
-    static const double gauss[5]  = { -0.906179845938664, -0.538469310105683, 0, 0.538469310105683,
-                                      0.906179845938664 };
+    static const double gauss[5]   = { -0.906179845938664, -0.538469310105683, 0, 0.538469310105683,
+                                       0.906179845938664 };
     static const double weights[5] = { 0.236926885056189, 0.478628670499366, 0.568888888888889,
                                        0.478628670499366, 0.236926885056189 };
     FlowErrors          sum;

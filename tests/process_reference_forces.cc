@@ -3,9 +3,9 @@
 // limits of the SMM layer.
 #include <deal.II/base/mpi.h>
 
-#include <axiforge/process/step.h>
-
 #include "flow_fixture.h"
+
+#include <axiforge/process/step.h>
 
 using namespace axiforge;
 using namespace axiforge::testing_support;
@@ -38,7 +38,8 @@ namespace
   }
 
 
-  Entries scene(const Body &body, const Entries &material, const Entries &friction, const double speed)
+  Entries
+  scene(const Body &body, const Entries &material, const Entries &friction, const double speed)
   {
     return Entries{ "Tools = upper", "Process/End time = 1e9", "Time stepping/Time step = 1",
                     "Flow solver/Tolerance = 1e-7", "Flow solver/Regularisation = 1e-4" } +
@@ -91,7 +92,7 @@ TEST(MeanPressure, OfPerfectlyPlasticCylinders)
       SCOPED_TRACE(fmt::format("R/h {} m {}", entry.ratio, entry.m));
       const Body   body = cylinder(25, 12.5 / entry.ratio, 8);
       const double p    = first_pressure(body, perfectly_plastic(100),
-                                         entry.m < 1 ? shear(entry.m) : Entries{ "Law = sticking" }) /
+                                      entry.m < 1 ? shear(entry.m) : Entries{ "Law = sticking" }) /
                        100;
       EXPECT_NEAR(p / entry.expected, 1, 0.003);
       // power of the parallel field with this friction
@@ -121,8 +122,8 @@ TEST(MeanPressure, OfRings)
       EXPECT_NEAR(p / expected, 1, 0.003);
       // All friction at its limit over the faces, with the velocity of the frictionless ring
       // (Avitzur's field with s = 0), is dearer.
-      const double frictionless_slip = 2 * m * (18 * 18 * 18 - 9 * 9 * 9) /
-                                       (3 * std::sqrt(3.) * 12 * (18 * 18 - 9 * 9));
+      const double frictionless_slip =
+          2 * m * (18 * 18 * 18 - 9 * 9 * 9) / (3 * std::sqrt(3.) * 12 * (18 * 18 - 9 * 9));
       EXPECT_LT(p, 1 + frictionless_slip);
       if (std::getenv("AXIFORGE_TEST_FIGURES"))
         fmt::print("ring m {}: {:.5f}, expected {}\n", m, p, expected);
@@ -143,7 +144,8 @@ namespace
   }
 
 
-  double largest_force_difference(const std::vector<StepRecord> &a, const std::vector<StepRecord> &b)
+  double largest_force_difference(const std::vector<StepRecord> &a,
+                                  const std::vector<StepRecord> &b)
   {
     double worst = 0;
     for (unsigned int step = 0; step < a.size(); ++step)
@@ -159,9 +161,9 @@ protected:
   Entries material() const
   {
     const std::string name = GetParam();
-    return name == "plastic" ? perfectly_plastic(100) :
-           name == "rate"    ? power_law(100, 0.2) :
-                               swift_power(100, 0.01, 0.2, 0.02);
+    return name == "plastic" ? perfectly_plastic(100)
+           : name == "rate"  ? power_law(100, 0.2)
+                             : swift_power(100, 0.01, 0.2, 0.02);
   }
 };
 

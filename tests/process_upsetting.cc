@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Frictionless upsetting, the patch test of the flow formulation: the exact velocity is linear, so
-// every mesh has it to rounding errors. The midpoint rule's own answer is known in closed form, too.
-// Then what must not change the answer: frame, units, solver options.
+// every mesh has it to rounding errors. The midpoint rule's own answer is known in closed form,
+// too. Then what must not change the answer: frame, units, solver options.
 #include <deal.II/base/mpi.h>
 
-#include <axiforge/process/step.h>
-
 #include "flow_fixture.h"
+
+#include <axiforge/process/step.h>
 
 using namespace axiforge;
 using namespace axiforge::testing_support;
@@ -33,7 +33,8 @@ namespace
 
   /**
    * What the implicit midpoint rule makes of uniform compression. With q = dt V/(4 h_m), h_m the
-   * height in the middle of the step: r_{n+1}/r_n = (1 + q)/(1 - q), h_{n+1}/h_n = (1 - 2q)/(1 + 2q).
+   * height in the middle of the step: r_{n+1}/r_n = (1 + q)/(1 - q), h_{n+1}/h_n = (1 - 2q)/(1 +
+   * 2q).
    */
   struct MidpointCylinder
   {
@@ -59,13 +60,14 @@ namespace
     {
       const double regular =
           std::hypot(rate, scene.flow.regularisation * scene.characteristic_rate);
-      return M_PI * middle_r * middle_r *
-             scene.material.flow_stress(middle_strain, regular).value * rate / regular;
+      return M_PI * middle_r * middle_r * scene.material.flow_stress(middle_strain, regular).value *
+             rate / regular;
     }
   };
 
 
-  /// Runs to the given reduction in equal steps of the stroke and compares each with the closed form.
+  /// Runs to the given reduction in equal steps of the stroke and compares each with the closed
+  /// form.
   void check_patch(FlowProblem       &problem,
                    const double       reduction,
                    const unsigned int n_steps,
@@ -88,11 +90,11 @@ namespace
         for (unsigned int node = 0; node < state.tables.n_nodes; ++node)
           {
             const Point  now = state.node_position(node);
-            const double vr = state.velocity.local_element(2 * node),
-                         vz = state.velocity.local_element(2 * node + 1);
-            worst_velocity  = std::max(
-                 { worst_velocity, std::abs(vr - 0.5 * exact.rate * (now[0] - 0.5 * dt * vr)),
-                    std::abs(vz + exact.rate * (now[1] - 0.5 * dt * vz)) });
+            const double vr  = state.velocity.local_element(2 * node),
+                         vz  = state.velocity.local_element(2 * node + 1);
+            worst_velocity   = std::max({ worst_velocity,
+                                          std::abs(vr - 0.5 * exact.rate * (now[0] - 0.5 * dt * vr)),
+                                          std::abs(vz + exact.rate * (now[1] - 0.5 * dt * vz)) });
           }
         for (const double strain : state.strain)
           worst_strain = std::max(worst_strain, std::abs(strain - exact.strain));
@@ -175,8 +177,9 @@ TEST(PatchTest, HangingNodes)
 
 TEST(PatchTest, Picard)
 {
-  FlowProblem problem(tight + hardening + cylinder(3) + upper_platen() +
-                      Entries{ "Flow solver/Iteration = picard", "Flow solver/Most iterations = 400" });
+  FlowProblem problem(
+      tight + hardening + cylinder(3) + upper_platen() +
+      Entries{ "Flow solver/Iteration = picard", "Flow solver/Most iterations = 400" });
   check_patch(problem, 0.1, 4);
 }
 
@@ -187,9 +190,9 @@ TEST(PatchTest, PlainPenaltyErrorFallsWithThePenalty)
   std::vector<double> errors;
   for (const std::string penalty : { "1e4", "1e5", "1e6" })
     {
-      FlowProblem      problem(tight + rate_sensitive + cylinder(3) + upper_platen() +
-                               Entries{ "Flow solver/Incompressibility = penalty",
-                                        "Flow solver/Penalty = " + penalty });
+      FlowProblem problem(
+          tight + rate_sensitive + cylinder(3) + upper_platen() +
+          Entries{ "Flow solver/Incompressibility = penalty", "Flow solver/Penalty = " + penalty });
       const StepRecord record = process::advance(problem.scene, problem.state, problem.solver(), 4);
       MidpointCylinder exact;
       exact.step(4);
@@ -214,7 +217,7 @@ namespace
   Press press(const double z0, const double lower_velocity, const double upper_velocity)
   {
     TemporaryFolder   folder;
-    const std::string file = folder.file("whole.geo", fmt::format(R"(
+    const std::string file     = folder.file("whole.geo", fmt::format(R"(
 z = {:.17g};
 Point(1) = {{0, z, 0}};
 Point(2) = {{25, z, 0}};
@@ -233,13 +236,14 @@ Recombine Surface{{1}};
 Physical Surface("workpiece") = {{1}};
 Physical Curve("axis") = {{4}};
 )",
-                                                                  z0));
+                                                                      z0));
     const Entries     friction = { "Law = smm", "Factor = 0.3" };
-    FlowProblem       problem(tight + hardening + workpiece(file) +
-                              Entries{ "Tools = lower, upper", "Flow solver/Reference strain rate = 0.01" } +
-                              platen("lower", z0, lower_velocity, friction) +
-                              platen("upper", z0 + 50, upper_velocity, friction));
-    Press             result;
+    FlowProblem       problem(
+              tight + hardening + workpiece(file) +
+              Entries{ "Tools = lower, upper", "Flow solver/Reference strain rate = 0.01" } +
+              platen("lower", z0, lower_velocity, friction) +
+              platen("upper", z0 + 50, upper_velocity, friction));
+    Press result;
     for (unsigned int step = 0; step < 8; ++step)
       {
         const StepRecord record =
@@ -295,14 +299,16 @@ TEST(Frame, PositionMotionAndSideOfThePressDoNotMatter)
 namespace
 {
   /// Example 1 in small, with all lengths, stresses and times in other units.
-  std::array<double, 4> scaled(const double L, const double S, const double T, const Entries &friction)
+  std::array<double, 4>
+  scaled(const double L, const double S, const double T, const Entries &friction)
   {
     FlowProblem problem(
         Entries{ "Process/End time = 1e9", "Time stepping/Time step = 1",
                  "Flow solver/Tolerance = 1e-9", "Tools = upper" } +
-        workpiece(geometry("cylinder.geo"),
-                  fmt::format("Radius = {0:.17g}, Height = {0:.17g}, RadialCells = 5, AxialCells = 5",
-                              25 * L)) +
+        workpiece(
+            geometry("cylinder.geo"),
+            fmt::format("Radius = {0:.17g}, Height = {0:.17g}, RadialCells = 5, AxialCells = 5",
+                        25 * L)) +
         swift_power(100 * S, 0.01, 0.2, 0.1) +
         Entries{ "Material/Reference strain rate = " + number(0.01 / T) } +
         platen("upper", 25 * L, -0.25 * L / T, friction, 200 * L));
@@ -323,8 +329,11 @@ TEST(Units, AnswersScaleWithLengthStressAndTime)
     {
       SCOPED_TRACE(friction[0]);
       const auto reference = scaled(1, 1, 1, friction);
-      for (const auto &units : { std::array<double, 3>{ { 1e-3, 1, 1 } }, { { 1e3, 1, 1 } },
-                                 { { 1, 1e-6, 1 } }, { { 1, 1e6, 1 } }, { { 1, 1, 1e-5 } },
+      for (const auto &units : { std::array<double, 3>{ { 1e-3, 1, 1 } },
+                                 { { 1e3, 1, 1 } },
+                                 { { 1, 1e-6, 1 } },
+                                 { { 1, 1e6, 1 } },
+                                 { { 1, 1, 1e-5 } },
                                  { { 1e3, 1e-6, 1e4 } } })
         {
           const auto other = scaled(units[0], units[1], units[2], friction);

@@ -47,7 +47,7 @@ namespace
     const double rest  = n == 0 ? 2 / std::sqrt(3.) * C * std::log(b / r)
                                 : C / (std::sqrt(3.) * n) * std::pow(2 * c / std::sqrt(3.), n) *
                                      (std::pow(r, -2 * n) - std::pow(b, -2 * n));
-    flow.mean_stress = -rest + sigma / std::sqrt(3.); // sigma_rr = mean - sigma/sqrt3
+    flow.mean_stress   = -rest + sigma / std::sqrt(3.); // sigma_rr = mean - sigma/sqrt3
     return flow;
   }
 
@@ -61,9 +61,9 @@ namespace
       for (unsigned int j = 0; j < 2; ++j)
         flow.gradient[2 * i + j] = c / cubed * ((i == j) - 3 * x[i] * x[j] / (R * R));
     const double sigma = C * std::pow(2 * c / cubed, n);
-    const double rest  = n == 0 ? 2 * C * std::log(b / R)
-                                : 2 * C / (3 * n) * std::pow(2 * c, n) *
-                                     (std::pow(R, -3 * n) - std::pow(b, -3 * n));
+    const double rest =
+        n == 0 ? 2 * C * std::log(b / R)
+               : 2 * C / (3 * n) * std::pow(2 * c, n) * (std::pow(R, -3 * n) - std::pow(b, -3 * n));
     flow.mean_stress = -rest + 2. / 3 * sigma; // sigma_RR = mean - 2/3 sigma
     return flow;
   }
@@ -113,12 +113,11 @@ TEST_P(ExpandingShell, Cylinder)
   Study        study;
   for (unsigned int level = 0; level < 3; ++level)
     {
-      FlowProblem problem(
-          at_start + material(C, n) +
-          workpiece(geometry("tube.geo"), "RadialCells = 4, AxialCells = 2") +
-          Entries{ fmt::format("Workpiece/Refinement levels = {}", level), "Boundaries = inner",
-                   "Boundary inner/Velocity r = 5 / r" });
-      const auto result = problem.solve_at_start();
+      FlowProblem problem(at_start + material(C, n) +
+                          workpiece(geometry("tube.geo"), "RadialCells = 4, AxialCells = 2") +
+                          Entries{ fmt::format("Workpiece/Refinement levels = {}", level),
+                                   "Boundaries = inner", "Boundary inner/Velocity r = 5 / r" });
+      const auto  result = problem.solve_at_start();
       study.add(flow_errors(problem.state, result,
                             [C, n](const Point &x) { return cylinder_flow(x, C, n); }),
                 result.record.boundaries[0].pressure / cylinder_pressure(C, n) - 1);
@@ -139,7 +138,7 @@ TEST_P(ExpandingShell, Sphere)
                  workpiece(geometry("sphere.geo"),
                            fmt::format("RadialCells = {}, MeridionalCells = {}", cells, 3 * cells / 2)) +
                  Entries{ "Boundaries = inner", "Boundary inner/Velocity r = 5 * r / (r^2 + z^2)^1.5",
-                          "Boundary inner/Velocity z = 5 * z / (r^2 + z^2)^1.5" });
+                   "Boundary inner/Velocity z = 5 * z / (r^2 + z^2)^1.5" });
       const auto result = problem.solve_at_start();
       study.add(flow_errors(problem.state, result,
                             [C, n](const Point &x) { return sphere_flow(x, C, n); }),
@@ -149,14 +148,14 @@ TEST_P(ExpandingShell, Sphere)
 }
 
 
-// A Newtonian fluid in a cone of half angle alpha: v_R = A (cos^2 theta - cos^2 alpha)/R^2. All of the
-// boundary is prescribed, and on curved edges the interpolated flux is not zero to the last digit: only
-// the plain penalty has an answer, with a mean stress that is free by a constant.
+// A Newtonian fluid in a cone of half angle alpha: v_R = A (cos^2 theta - cos^2 alpha)/R^2. All of
+// the boundary is prescribed, and on curved edges the interpolated flux is not zero to the last
+// digit: only the plain penalty has an answer, with a mean stress that is free by a constant.
 TEST(ConvergingCone, VelocityConverges)
 {
-  const double  cos_alpha = std::cos(M_PI / 6), A = -1000;
-  TemporaryFolder folder;
-  const std::string cone = folder.file("cone.geo", R"(
+  const double      cos_alpha = std::cos(M_PI / 6), A = -1000;
+  TemporaryFolder   folder;
+  const std::string cone  = folder.file("cone.geo", R"(
 DefineConstant[ Cells = {4, Name "Cells"} ];
 s = Sin(Pi / 6); c = Cos(Pi / 6);
 Point(1) = {0, 0, 0};
@@ -179,10 +178,10 @@ Physical Curve("inner") = {4};
 Physical Curve("outer") = {2};
 Physical Curve("wall") = {3};
 )");
-  const auto exact = [=](const Point &x) {
+  const auto        exact = [=](const Point &x) {
     const double r = x[0], z = x[1], R2 = x.square(), R = std::sqrt(R2), R5 = R2 * R2 * R;
     // v = f x with f = A (z^2 - cos^2 alpha R^2)/R^5
-    const double f = A * (z * z - cos_alpha * cos_alpha * R2) / R5;
+    const double f   = A * (z * z - cos_alpha * cos_alpha * R2) / R5;
     const double f_r = -2 * A * cos_alpha * cos_alpha * r / R5 - 5 * f * r / R2;
     const double f_z = 2 * A * (1 - cos_alpha * cos_alpha) * z / R5 - 5 * f * z / R2;
     ExactFlow    flow;
@@ -194,11 +193,10 @@ Physical Curve("wall") = {3};
   std::vector<double> velocity, gradient;
   for (unsigned int level = 0; level < 3; ++level)
     {
-      Entries entries = at_start + power_law(3, 1) +
-                        workpiece(cone, fmt::format("Cells = {}", 4 << level)) +
-                        Entries{ "Boundaries = inner, outer, wall",
-                                 "Flow solver/Incompressibility = penalty",
-                                 "Flow solver/Penalty = 1e6", "Flow solver/Tolerance = 1e-8" };
+      Entries entries =
+          at_start + power_law(3, 1) + workpiece(cone, fmt::format("Cells = {}", 4 << level)) +
+          Entries{ "Boundaries = inner, outer, wall", "Flow solver/Incompressibility = penalty",
+                   "Flow solver/Penalty = 1e6", "Flow solver/Tolerance = 1e-8" };
       for (const std::string name : { "inner", "outer", "wall" })
         entries = entries + Entries{ "Boundary " + name + "/Velocity r = 1",
                                      "Boundary " + name + "/Velocity z = 1" };

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Manufactured solutions: any stream function gives an incompressible velocity v = curl(psi/r e_theta),
-// and automatic differentiation gives the body force that drives it. Orders of convergence on
-// straight, distorted, curved and hanging-node meshes.
-#include <Sacado.hpp>
+// Manufactured solutions: any stream function gives an incompressible velocity v = curl(psi/r
+// e_theta), and automatic differentiation gives the body force that drives it. Orders of
+// convergence on straight, distorted, curved and hanging-node meshes.
 #include <deal.II/base/mpi.h>
 
 #include "flow_fixture.h"
+#include <Sacado.hpp>
 
 using namespace axiforge;
 using namespace axiforge::testing_support;
@@ -17,8 +17,8 @@ namespace
 
   constexpr double height = 1; // of the square [mm]
 
-  /// sigma = K (prestrain + strain)^hardening epsdot^n, with a strain that is a given function of the
-  /// position. hardening = 0: no dependence on the strain.
+  /// sigma = K (prestrain + strain)^hardening epsdot^n, with a strain that is a given function of
+  /// the position. hardening = 0: no dependence on the strain.
   struct Law
   {
     double strength, prestrain, hardening, n, smallest_rate;
@@ -35,8 +35,8 @@ namespace
   };
 
 
-  /// Velocity of psi = r^2 (1 + r^2/2) g(z) with g = 1 - z + 0.3 (1 - z)^3 + sin(pi z)/(2 pi). The shear
-  /// rate vanishes at the end z = 1, and the strain rate nowhere.
+  /// Velocity of psi = r^2 (1 + r^2/2) g(z) with g = 1 - z + 0.3 (1 - z)^3 + sin(pi z)/(2 pi). The
+  /// shear rate vanishes at the end z = 1, and the strain rate nowhere.
   template <typename Number> std::array<Number, 2> velocity(const Number &r, const Number &z)
   {
     const Number y  = 1. - z;
@@ -59,12 +59,12 @@ namespace
     Second R(r), Z(z);
     R.resize(2);
     Z.resize(2);
-    R.fastAccessDx(0)                  = 1;
-    R.fastAccessDx(1)                  = 0;
-    Z.fastAccessDx(0)                  = 0;
-    Z.fastAccessDx(1)                  = 1;
-    const std::array<Second, 2> v      = velocity(R, Z);
-    const First                 rr     = v[0].dx(0), zz = v[1].dx(1), tt = v[0].val() / r;
+    R.fastAccessDx(0)              = 1;
+    R.fastAccessDx(1)              = 0;
+    Z.fastAccessDx(0)              = 0;
+    Z.fastAccessDx(1)              = 1;
+    const std::array<Second, 2> v  = velocity(R, Z);
+    const First                 rr = v[0].dx(0), zz = v[1].dx(1), tt = v[0].val() / r;
     const First                 rz     = 0.5 * (v[0].dx(1) + v[1].dx(0));
     const First                 square = 2. / 3 * (rr * rr + zz * zz + tt * tt + 2. * rz * rz) +
                          law.smallest_rate * law.smallest_rate;
@@ -165,7 +165,8 @@ TEST_P(Manufactured, Converges)
   const Mesh      mesh     = std::get<0>(GetParam());
   const LawCase   law_case = std::get<1>(GetParam());
   TemporaryFolder folder;
-  // Corners belong to the velocity: the end z = 1 is free, with zero traction in the exact solution.
+  // Corners belong to the velocity: the end z = 1 is free, with zero traction in the exact
+  // solution.
   const std::string square = folder.file("square.geo", R"(
 DefineConstant[ Cells = {4, Name "Cells"} ];
 Point(1) = {0, 0, 0};
@@ -187,22 +188,22 @@ Physical Curve("side") = {2};
 Physical Curve("axis") = {4};
 )");
 
-  std::vector<double> velocity_errors, gradient_errors, stress_errors;
+  std::vector<double>       velocity_errors, gradient_errors, stress_errors;
   std::vector<unsigned int> iterations;
   for (unsigned int cells = 4; cells <= 16; cells *= 2)
     {
-      const Entries material = law_case.hardening > 0 ?
-                                   swift_power(10, 0.1, law_case.hardening, law_case.n) :
-                                   power_law(10, law_case.n);
+      const Entries material = law_case.hardening > 0
+                                   ? swift_power(10, 0.1, law_case.hardening, law_case.n)
+                                   : power_law(10, law_case.n);
       FlowProblem   problem(
             material + workpiece(square, fmt::format("Cells = {}", cells)) +
             Entries{ "Time stepping/Scheme = explicit euler", "Process/End time = 1",
-                     "Time stepping/Time step = 1", "Boundaries = bottom, side",
-                     "Boundary bottom/Velocity r = 1", "Boundary bottom/Velocity z = 1",
-                     "Boundary side/Velocity r = 1", "Boundary side/Velocity z = 1",
-                     "Flow solver/Reference strain rate = 1", "Flow solver/Tolerance = 1e-9" });
+                   "Time stepping/Time step = 1", "Boundaries = bottom, side",
+                   "Boundary bottom/Velocity r = 1", "Boundary bottom/Velocity z = 1",
+                   "Boundary side/Velocity r = 1", "Boundary side/Velocity z = 1",
+                   "Flow solver/Reference strain rate = 1", "Flow solver/Tolerance = 1e-9" });
       change_mesh(problem, mesh, cells);
-      const Law law{ 10, 0.1, law_case.hardening, law_case.n,
+      const Law    law{ 10, 0.1, law_case.hardening, law_case.n,
                      problem.scene.flow.regularisation * problem.scene.characteristic_rate };
       const double sample = law_case.hardening > 0 ? 0.4 : 0;
       ASSERT_NEAR(problem.scene.material.flow_stress(sample, 0.7).value,
@@ -225,21 +226,22 @@ Physical Curve("axis") = {4};
           }
 
       const auto result = problem.solve_at_start();
-      const auto errors =
-          flow_errors(state, result, [law](const Point &x) { return exact_flow(law, x); })
-              .relative();
+      const auto errors = flow_errors(state, result, [law](const Point &x) {
+                            return exact_flow(law, x);
+                          }).relative();
       velocity_errors.push_back(errors[0]);
       gradient_errors.push_back(errors[1]);
       stress_errors.push_back(errors[2]);
       iterations.push_back(result.record.iterations);
     }
-  SCOPED_TRACE(fmt::format("velocity L2 {}: {}\nvelocity H1 {}: {}\nmean stress {}: {}\niterations {}",
-                           table(velocity_errors), table(orders(velocity_errors)),
-                           table(gradient_errors), table(orders(gradient_errors)),
-                           table(stress_errors), table(orders(stress_errors)),
-                           fmt::join(iterations, " ")));
+  SCOPED_TRACE(
+      fmt::format("velocity L2 {}: {}\nvelocity H1 {}: {}\nmean stress {}: {}\niterations {}",
+                  table(velocity_errors), table(orders(velocity_errors)), table(gradient_errors),
+                  table(orders(gradient_errors)), table(stress_errors),
+                  table(orders(stress_errors)), fmt::join(iterations, " ")));
   if (std::getenv("AXIFORGE_TEST_FIGURES"))
-    std::cout << table(velocity_errors) << " | " << table(gradient_errors) << " | " << table(stress_errors) << '\n';
+    std::cout << table(velocity_errors) << " | " << table(gradient_errors) << " | "
+              << table(stress_errors) << '\n';
   EXPECT_GE(orders(velocity_errors).back(), 2.8);
   EXPECT_GE(orders(gradient_errors).back(), 1.8);
   EXPECT_GE(orders(stress_errors).back(), 1.8);
@@ -249,10 +251,11 @@ Physical Curve("axis") = {4};
 INSTANTIATE_TEST_SUITE_P(
     Meshes,
     Manufactured,
-    ::testing::Combine(::testing::Values(Mesh::straight, Mesh::distorted, Mesh::curved, Mesh::hanging),
-                       ::testing::Values(LawCase{ "newtonian", 0, 1 },
-                                         LawCase{ "rate_02", 0, 0.2 },
-                                         LawCase{ "hardening", 0.3, 0.1 })),
+    ::testing::Combine(
+        ::testing::Values(Mesh::straight, Mesh::distorted, Mesh::curved, Mesh::hanging),
+        ::testing::Values(LawCase{ "newtonian", 0, 1 },
+                          LawCase{ "rate_02", 0, 0.2 },
+                          LawCase{ "hardening", 0.3, 0.1 })),
     [](const auto &info) {
       return std::string(mesh_names[static_cast<int>(std::get<0>(info.param))]) + "_" +
              std::get<1>(info.param).name;

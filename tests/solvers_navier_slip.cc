@@ -50,9 +50,10 @@ namespace
 
     std::string text() const
     {
-      return fmt::format("velocity L2 {}: {}\nvelocity H1 {}: {}\nfriction power {}\nwaviness {:.3g}",
-                         table(velocity), table(orders(velocity)), table(gradient),
-                         table(orders(gradient)), table(power), waviness);
+      return fmt::format(
+          "velocity L2 {}: {}\nvelocity H1 {}: {}\nfriction power {}\nwaviness {:.3g}",
+          table(velocity), table(orders(velocity)), table(gradient), table(orders(gradient)),
+          table(power), waviness);
     }
   };
 
@@ -107,7 +108,7 @@ Physical Curve("axis") = {4};
         for (CellHistory &history : problem.state.cell_history)
           history.pressure[0] = -100;
         const auto result_here = problem.solve_at_start(dt);
-        const auto errors = flow_errors(problem.state, result_here, exact, false).relative();
+        const auto errors      = flow_errors(problem.state, result_here, exact, false).relative();
         result.velocity.push_back(errors[0]);
         result.gradient.push_back(errors[1]);
         result.power.push_back(
@@ -144,8 +145,7 @@ Physical Curve("axis") = {4};
 TEST(NavierSlip, LinearViscousFriction)
 {
   for (const double b : { 0.1, 1., 10., 100. })
-    expect_orders(
-        study(b, { "Law = norton", "Exponent = 1", "Viscosity = " + number(mu / b) }));
+    expect_orders(study(b, { "Law = norton", "Exponent = 1", "Viscosity = " + number(mu / b) }));
 }
 
 
@@ -155,9 +155,9 @@ TEST(NavierSlip, SmmLayerWithTheViscosityOfTheWorkpiece)
   for (const double b : { 0.1, 1., 10., 100. })
     {
       const double beta = 3 * t / (7 * b);
-      expect_orders(study(b, { "Law = smm", "Layer viscosity = workpiece",
-                               "Layer thickness = " + number(t),
-                               "Factor = " + number(beta / (1 + beta)) }));
+      expect_orders(
+          study(b, { "Law = smm", "Layer viscosity = workpiece", "Layer thickness = " + number(t),
+                     "Factor = " + number(beta / (1 + beta)) }));
     }
 }
 

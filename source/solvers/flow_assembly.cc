@@ -280,6 +280,9 @@ namespace axiforge::solvers
                 edge.force[a] * edge.tangent[a][c];
       }
     friction_force.compress(dealii::VectorOperation::add);
+    unbalanced = internal;
+    unbalanced += friction_force;
+    unbalanced.update_ghost_values();
   }
 
 

@@ -152,7 +152,7 @@ namespace axiforge::solvers
                            state.position.local_element(2 * node.node) + time_step * v[0]);
             }
         if (sticking && touch.tool[1] == no_tool && !node.on_axis && !node.on_symmetry)
-          force[touch.tool[0]] += (node_value(internal, node.node) * t) * t;
+          force[touch.tool[0]] += (node_value(balance(), node.node) * t) * t;
         slip[touch.tool[0]].push_back({ { position.local_element(2 * node.node), touch.slip } });
       }
     for (unsigned int e = 0; e < friction->edges().size(); ++e)

@@ -38,6 +38,7 @@ namespace axiforge::solvers
     internal.reinit(velocity);
     external.reinit(velocity);
     friction_force.reinit(velocity);
+    unbalanced.reinit(velocity);
     scale.reinit(velocity);
 
     const std::size_t n_cells = state.tables.cells.size();
@@ -147,10 +148,11 @@ namespace axiforge::solvers
         friction->evaluate(*contact, position, velocity, points, time_step, scene.flow.newton());
         add_friction_forces();
         contact->make_frames(velocity, time_step, frames);
+        contact->update_reactions(balance(), scale, false);
         Norms norms = measure();
         if (norms.residual < release_residual)
           {
-            const unsigned int released = contact->update_reactions(internal, scale, true);
+            const unsigned int released = contact->update_reactions(balance(), scale, true);
             if (MPI::sum(released, state.communicator) > 0)
               {
                 changes += released;
@@ -237,12 +239,11 @@ namespace axiforge::solvers
   FlowSolver::Norms FlowSolver::measure() const
   {
     // Forces that nothing else balances, over the sum of the magnitudes of the cells' forces.
-    double force = 0, reference = 0, constraint = 0;
+    const Field &forces = balance();
+    double       force = 0, reference = 0, constraint = 0;
     for (unsigned int node = 0; node < state.tables.n_owned_nodes; ++node)
       {
-        const Vector2 r(
-            { internal.local_element(2 * node) + friction_force.local_element(2 * node),
-              internal.local_element(2 * node + 1) + friction_force.local_element(2 * node + 1) });
+        const Vector2 r({ forces.local_element(2 * node), forces.local_element(2 * node + 1) });
         reference += scale.local_element(2 * node) * scale.local_element(2 * node) +
                      scale.local_element(2 * node + 1) * scale.local_element(2 * node + 1);
         const int f = frame_of_node[node];

@@ -7,8 +7,8 @@ namespace axiforge
    * OpenBLAS chooses its kernels when it is loaded, and falls back to those of a processor of 2004
    * (PRESCOTT, a quarter of the speed) when it is older than the machine. In that case sets
    * OPENBLAS_CORETYPE to what the processor has and starts the program again. Does nothing with
-   * another BLAS, on a known processor, or if the user has set that variable. Call it first in
-   * main().
+   * another BLAS, on a known processor, or if the user has set that variable. Call it before MPI
+   * starts.
    */
   void restart_with_suitable_blas(char **argv);
 

@@ -83,17 +83,25 @@ namespace axiforge::solvers
     void  add_boundary_pressure();
     void  add_friction_forces();
     Norms measure() const;
-    void  assemble();
-    void  apply_frames(const std::vector<unsigned int> &nodes,
-                       std::vector<double>             &matrix,
-                       std::vector<double>             &rhs) const;
-    bool  solve_increment();
-    void  recover();
-    void  scatter_force(unsigned int cell, const CellDofs &force, Field &target) const;
-    void  finish(FlowResult &result);
-    void  record_tools(StepRecord &record);
-    void  record_powers(StepRecord &record);
-    void  record_boundaries(StepRecord &record);
+
+    /// Nodal forces that contact and kinematic conditions have to balance: internal - external +
+    /// friction, with ghosts.
+    const Field &balance() const
+    {
+      return friction->edges().empty() ? internal : unbalanced;
+    }
+
+    void assemble();
+    void apply_frames(const std::vector<unsigned int> &nodes,
+                      std::vector<double>             &matrix,
+                      std::vector<double>             &rhs) const;
+    bool solve_increment();
+    void recover();
+    void scatter_force(unsigned int cell, const CellDofs &force, Field &target) const;
+    void finish(FlowResult &result);
+    void record_tools(StepRecord &record);
+    void record_powers(StepRecord &record);
+    void record_boundaries(StepRecord &record);
 
     const scene::Scene &scene;
     const State        &state;
@@ -112,7 +120,7 @@ namespace axiforge::solvers
     std::unique_ptr<ContactSet>        contact;
     std::unique_ptr<InterfaceFriction> friction;
     Field                              velocity, increment, position; ///< position: at theta
-    Field                              internal, external, friction_force, scale;
+    Field                              internal, external, friction_force, unbalanced, scale;
     std::vector<FlowPoint>             points;
     std::vector<std::array<double, n_pressure>> pressure;
     std::vector<CellRecovery>                   recovery;
