@@ -176,6 +176,9 @@ TEST(Friction, SmmFactor)
   EXPECT_NEAR(friction("set Law = smm\n set Factor = 0.9999").beta(), 9999., 1e-7);
   EXPECT_FALSE(friction("set Law = smm").workpiece_viscosity());
   EXPECT_TRUE(friction("set Law = smm\n set Layer viscosity = workpiece").workpiece_viscosity());
+  EXPECT_EQ(friction("set Law = smm").layer_element(), SmmElement::lagrange);
+  EXPECT_EQ(friction("set Law = smm\n set Layer element = serendipity").layer_element(),
+            SmmElement::serendipity);
   EXPECT_EQ(friction("set Law = smm\n set Factor = 0.25").factor(), 0.25);
   EXPECT_ANY_THROW(friction("set Law = smm").evaluate(at(1.)));
   EXPECT_ANY_THROW(friction("set Law = sticking").evaluate(at(1.)));

@@ -29,7 +29,9 @@ namespace axiforge::laws
         FrictionKind::tangential_forces,
         { "Factor", "Regularisation velocity" } },
       { "norton", FrictionKind::norton, { "Viscosity", "Exponent", "Regularisation velocity" } },
-      { "smm", FrictionKind::smm, { "Factor", "Layer thickness", "Layer viscosity" } }
+      { "smm",
+        FrictionKind::smm,
+        { "Factor", "Layer thickness", "Layer viscosity", "Layer element" } }
     };
 
     struct ViscosityChoice
@@ -39,6 +41,15 @@ namespace axiforge::laws
     };
 
     const std::vector<ViscosityChoice> viscosities = { { "layer", false }, { "workpiece", true } };
+
+    struct ElementChoice
+    {
+      std::string name;
+      SmmElement  element;
+    };
+
+    const std::vector<ElementChoice> elements = { { "lagrange", SmmElement::lagrange },
+                                                  { "serendipity", SmmElement::serendipity } };
 
     /// Name, variable, text and pattern of each entry, once.
     template <typename Parameters, typename Visitor>
@@ -76,6 +87,13 @@ namespace axiforge::laws
             "adjacent cell, one iteration old, which may fail to converge for rate-independent "
             "materials.",
             Selection(selection_of(viscosities)));
+      visit(
+          "Layer element", p.layer_element,
+          "Element of the smm layer. lagrange: nine nodes, the centre one moves with the tool; it "
+          "spreads friction over the nodes of an edge as 1/6, 4/6, 1/6. serendipity: the eight "
+          "nodes of the paper, which spread it as 5/14, 4/14, 5/14 and make slip and traction "
+          "zig-zag from node to node. Uniform slip feels the same friction with both.",
+          Selection(selection_of(elements)));
     }
 
     /// v/sqrt(v^2 + v0^2) and its derivative.
@@ -119,6 +137,7 @@ namespace axiforge::laws
       , exponent_(parameters.exponent)
       , layer_thickness_(0.)
       , workpiece_viscosity_(false)
+      , layer_element_(SmmElement::lagrange)
       , regularisation_velocity_(0.)
   {
     const double     infinity = std::numeric_limits<double>::infinity();
@@ -148,6 +167,8 @@ namespace axiforge::laws
       check.between("Factor", parameters.factor, 0., 1.);
     workpiece_viscosity_ =
         find_choice(check, "Layer viscosity", parameters.layer_viscosity, viscosities).of_workpiece;
+    layer_element_ =
+        find_choice(check, "Layer element", parameters.layer_element, elements).element;
 
     const bool has_v0 = std::find(choice.entries.begin(), choice.entries.end(),
                                   "Regularisation velocity") != choice.entries.end();
@@ -250,6 +271,11 @@ namespace axiforge::laws
   double Friction::layer_thickness() const
   {
     return layer_thickness_;
+  }
+
+  SmmElement Friction::layer_element() const
+  {
+    return layer_element_;
   }
 
   bool Friction::workpiece_viscosity() const

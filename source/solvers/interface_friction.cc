@@ -216,6 +216,7 @@ namespace axiforge::solvers
     layer.beta                = friction.beta();
     layer.smallest_rate       = scene.flow.regularisation * scene.characteristic_rate;
     layer.workpiece_viscosity = friction.workpiece_viscosity();
+    layer.element             = friction.layer_element();
     layer.picard              = !newton;
 
     if (stored[e].layer.empty())

@@ -26,6 +26,23 @@ namespace axiforge::laws
     smm
   };
 
+  /**
+   * The fictitious element's shape functions. Both have the same geometry and, through the
+   * thickness, the same profile -eta (1 - eta)/2 of a uniform slip, so the exact results for it are
+   * the same.
+   *
+   * They share out a uniform traction differently between an edge's ends and its middle: `lagrange`
+   * as the edge's own Simpson weights do (1/6, 1/6, 4/6), `serendipity` as 5/14, 5/14, 4/14 if
+   * linear and thin. Where the layer is stiffer than a cell (beta/t > 1/edge length), equilibrium
+   * with the cell then makes the serendipity layer's slip wavy: under a uniform traction 2 in the
+   * middle and 0.4 at the ends in units in which uniform slip would be 6/7.
+   */
+  enum class SmmElement
+  {
+    serendipity, // 8 nodes, the paper's
+    lagrange     // 9 nodes, the middle one with the tool
+  };
+
   /// The entries of a tool's subsection Friction as they are read.
   struct FrictionParameters
   {
@@ -37,6 +54,7 @@ namespace axiforge::laws
     double      exponent                = 1.; // q
     double      layer_thickness         = 0.; // mm
     std::string layer_viscosity         = "layer";
+    std::string layer_element           = "lagrange";
 
     /// Declares the entries in the handler's current section; parsing fills the members.
     void declare(dealii::ParameterHandler &prm);
@@ -117,6 +135,9 @@ namespace axiforge::laws
     /// Whether the SMM layer takes the viscosity of the adjacent cell.
     bool workpiece_viscosity() const;
 
+    /// Which element the SMM layer is made of.
+    SmmElement layer_element() const;
+
     /// v0 [mm/s]; 0 for laws that don't use it.
     double regularisation_velocity() const;
 
@@ -128,6 +149,7 @@ namespace axiforge::laws
     double       exponent_;
     double       layer_thickness_;
     bool         workpiece_viscosity_;
+    SmmElement   layer_element_;
     double       regularisation_velocity_;
   };
 

@@ -6,27 +6,11 @@
 #include <Eigen/Core>
 
 #include <axiforge/base/geometry.h>
+#include <axiforge/laws/friction.h>
 #include <axiforge/laws/material.h>
 
 namespace axiforge::laws
 {
-  /**
-   * The fictitious element's shape functions. Both have the same geometry and, through the
-   * thickness, the same profile -eta (1 - eta)/2 of a uniform slip, so the exact results for it are
-   * the same.
-   *
-   * They share out a uniform traction differently between an edge's ends and its middle: `lagrange`
-   * as the edge's own Simpson weights do (1/6, 1/6, 4/6), `serendipity` as 5/14, 5/14, 4/14 if
-   * linear and thin. Where the layer is stiffer than a cell (beta/t > 1/edge length), equilibrium
-   * with the cell then makes the serendipity layer's slip wavy: under a uniform traction 2 in the
-   * middle and 0.4 at the ends in units in which uniform slip would be 6/7.
-   */
-  enum class SmmElement
-  {
-    serendipity, // 8 nodes, the paper's
-    lagrange     // 9 nodes, the middle one with the tool
-  };
-
   /**
    * One edge of the workpiece that touches a tool, as the friction layer sees it. Arrays over the
    * edge's nodes are in the order first end, other end, middle. Everything is at the middle of the
