@@ -124,6 +124,26 @@ TEST(FrictionSweep, other_laws)
   EXPECT_NEAR(forces / shear, 1, 3e-3);
 }
 
+// A tool that stands off first: the workpiece rests, and then everything is as without the gap.
+TEST(Approach, is_free_and_changes_nothing)
+{
+  const Entries material = swift_power(100, 0.01, 0.2, 0.02);
+  const auto    forces   = [&](const double gap) {
+    return run(Entries{ "Tools = upper", "Process/End stroke = " + number(1 + gap),
+                        "Time stepping/Stroke per step = 0.25" } +
+                    workpiece(geometry("cylinder.geo"), "RadialCells = 8, AxialCells = 8") + material +
+                    platen("upper", 25 + gap, -0.25, smm(0.5)))
+        .forces;
+  };
+  const std::vector<double> without = forces(0), with = forces(0.5);
+  ASSERT_EQ(without.size(), 4u);
+  ASSERT_EQ(with.size(), 6u);
+  EXPECT_EQ(with[0], 0);
+  EXPECT_EQ(with[1], 0);
+  for (unsigned int i = 0; i < 4; ++i)
+    EXPECT_NEAR(with[i + 2] / without[i], 1, 1e-4); // the solver stops at 1e-5 of the forces
+}
+
 int main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);

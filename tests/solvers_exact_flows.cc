@@ -84,8 +84,12 @@ namespace
 
     void check(const std::string &what, const double largest_pressure_error) const
     {
-      SCOPED_TRACE(what + "\nvelocity L2 " + table(velocity) + "\nvelocity H1 " + table(gradient) +
-                   "\nmean stress " + table(mean_stress) + "\ninner pressure " + table(pressure));
+      const std::string figures = what + "\nvelocity L2 " + table(velocity) + "\nvelocity H1 " +
+                                  table(gradient) + "\nmean stress " + table(mean_stress) +
+                                  "\ninner pressure " + table(pressure);
+      if (std::getenv("AXIFORGE_TEST_FIGURES"))
+        std::cout << figures << '\n';
+      SCOPED_TRACE(figures);
       EXPECT_GE(orders(velocity).back(), 2.8);
       EXPECT_GE(orders(gradient).back(), 1.8);
       EXPECT_GE(orders(mean_stress).back(), 1.8);

@@ -10,6 +10,10 @@ DefineConstant[
   Grading     = {4, Name "Grading"} // longest over shortest cell
 ];
 
+If (InnerCells < 1 || OuterCells < 1 || AxialCells < 1)
+  Error("billet_for_punch.geo: InnerCells = %g, OuterCells = %g, AxialCells = %g have to be 1 or more", InnerCells, OuterCells, AxialCells);
+EndIf
+
 If (PunchRadius <= 0 || PunchRadius >= Radius)
   Error("billet_for_punch.geo: PunchRadius = %g has to lie between 0 and Radius = %g", PunchRadius, Radius);
 EndIf

@@ -12,6 +12,10 @@ DefineConstant[
   Grading     = {1, Name "Grading"}
 ];
 
+If (RadialCells < 1 || AxialCells < 1)
+  Error("cylinder.geo: RadialCells = %g, AxialCells = %g have to be 1 or more", RadialCells, AxialCells);
+EndIf
+
 // ratio of neighbouring elements that gives this ratio of the first to the last
 radial_ratio = (RadialCells > 1) ? Grading ^ (1 / (RadialCells - 1)) : 1;
 axial_ratio  = (AxialCells > 1) ? Grading ^ (1 / (AxialCells - 1)) : 1;

@@ -12,6 +12,10 @@ DefineConstant[
   Grading     = {1, Name "Grading"}
 ];
 
+If (RadialCells < 1 || AxialCells < 1)
+  Error("cylinder_full.geo: RadialCells = %g, AxialCells = %g have to be 1 or more", RadialCells, AxialCells);
+EndIf
+
 radial_ratio = (RadialCells > 1) ? Grading ^ (1 / (RadialCells - 1)) : 1;
 
 Point(1) = {0, 0, 0};

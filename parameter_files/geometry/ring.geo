@@ -12,6 +12,10 @@ DefineConstant[
   Grading     = {1, Name "Grading"}
 ];
 
+If (RadialCells < 1 || AxialCells < 1)
+  Error("ring.geo: RadialCells = %g, AxialCells = %g have to be 1 or more", RadialCells, AxialCells);
+EndIf
+
 axial_ratio = (AxialCells > 1) ? Grading ^ (1 / (AxialCells - 1)) : 1;
 
 Point(1) = {InnerRadius, 0, 0};

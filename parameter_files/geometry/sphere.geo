@@ -8,6 +8,10 @@ DefineConstant[
   MeridionalCells = {12, Name "MeridionalCells"}
 ];
 
+If (RadialCells < 1 || MeridionalCells < 1)
+  Error("sphere.geo: RadialCells = %g, MeridionalCells = %g have to be 1 or more", RadialCells, MeridionalCells);
+EndIf
+
 Point(1) = {0, 0, 0};
 Point(2) = {InnerRadius, 0, 0};
 Point(3) = {OuterRadius, 0, 0};

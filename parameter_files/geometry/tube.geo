@@ -9,6 +9,10 @@ DefineConstant[
   AxialCells  = {4, Name "AxialCells"}
 ];
 
+If (RadialCells < 1 || AxialCells < 1)
+  Error("tube.geo: RadialCells = %g, AxialCells = %g have to be 1 or more", RadialCells, AxialCells);
+EndIf
+
 Point(1) = {InnerRadius, 0, 0};
 Point(2) = {OuterRadius, 0, 0};
 Point(3) = {OuterRadius, Height, 0};

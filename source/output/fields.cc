@@ -5,6 +5,8 @@
 #include <deal.II/fe/mapping_fe_field.h>
 #include <deal.II/numerics/data_out.h>
 
+#include <axiforge/base/collective.h>
+#include <axiforge/base/errors.h>
 #include <axiforge/output/results.h>
 
 namespace axiforge::output
@@ -145,9 +147,10 @@ namespace axiforge::output
     // Under another name first: a run that is killed leaves no half-written file.
     const std::string temporary = path + ".part";
     out.write_vtu_in_parallel(temporary, state.communicator);
-    if (Utilities::MPI::this_mpi_process(state.communicator) == 0)
-      std::rename(temporary.c_str(), path.c_str());
-    MPI_Barrier(state.communicator);
+    on_first_rank(state.communicator, [&] {
+      if (std::rename(temporary.c_str(), path.c_str()) != 0)
+        throw ComputationError("The file " + path + " can't be written. Is the disk full?");
+    });
   }
 
 

@@ -5,6 +5,7 @@
 #include <deal.II/base/data_out_base.h>
 #include <deal.II/base/mpi.h>
 
+#include <axiforge/base/collective.h>
 #include <axiforge/base/errors.h>
 #include <axiforge/output/results.h>
 
@@ -16,28 +17,25 @@ namespace axiforge::output
                    const Provenance   &provenance)
       : scene(scene)
       , folder(directory)
-      , is_first_rank(dealii::Utilities::MPI::this_mpi_process(state.communicator) == 0)
   {
-    if (is_first_rank)
-      {
-        std::error_code error;
-        std::filesystem::create_directories(folder + "/fields", error);
-        if (error)
-          throw InputError::entry("Output/Directory", folder,
-                                  "the folder can't be made (" + error.message() + ")",
-                                  "a folder that you may write to", "Choose another with --output");
-        // What an earlier run has left here would mix with ours.
-        for (const auto &entry : std::filesystem::directory_iterator(folder + "/fields"))
-          if (entry.path().extension() == ".vtu" || entry.path().extension() == ".part")
-            std::filesystem::remove(entry.path(), error);
-        for (const char *name : { "fields.pvd", "tools.pvd", "history.csv" })
-          std::filesystem::remove(folder + "/" + name, error);
-        write_file_atomically(folder + "/input.prm", provenance.input);
-        write_file_atomically(folder + "/parameters.prm", provenance.parameters);
-        write_file_atomically(folder + "/versions.txt", provenance.versions);
-        history.emplace(CsvFile::create(folder + "/history.csv", history_columns(scene)));
-      }
-    MPI_Barrier(state.communicator);
+    on_first_rank(state.communicator, [&] {
+      std::error_code error;
+      std::filesystem::create_directories(folder + "/fields", error);
+      if (error)
+        throw InputError::entry("Output/Directory", folder,
+                                "the folder can't be made (" + error.message() + ")",
+                                "a folder that you may write to", "Choose another with --output");
+      // What an earlier run has left here would mix with ours.
+      for (const auto &entry : std::filesystem::directory_iterator(folder + "/fields"))
+        if (entry.path().extension() == ".vtu" || entry.path().extension() == ".part")
+          std::filesystem::remove(entry.path(), error);
+      for (const char *name : { "fields.pvd", "tools.pvd", "history.csv" })
+        std::filesystem::remove(folder + "/" + name, error);
+      write_file_atomically(folder + "/input.prm", provenance.input);
+      write_file_atomically(folder + "/parameters.prm", provenance.parameters);
+      write_file_atomically(folder + "/versions.txt", provenance.versions);
+      history.emplace(CsvFile::create(folder + "/history.csv", history_columns(scene)));
+    });
     if (scene.output.format == "vtu")
       write_fields(state);
   }
@@ -58,8 +56,8 @@ namespace axiforge::output
   void Results::write(const State &state, const StepRecord &record)
   {
     wall_seconds += record.times.total;
-    if (is_first_rank)
-      history->write_row(history_row(scene, record, wall_seconds));
+    on_first_rank(state.communicator,
+                  [&] { history->write_row(history_row(scene, record, wall_seconds)); });
     if (scene.output.format == "vtu" && fields_due(state, record))
       write_fields(state);
   }
@@ -75,16 +73,15 @@ namespace axiforge::output
     const std::string fields = fmt::format("fields/workpiece_{:05}.vtu", state.step);
     write_vtu(state, folder + "/" + fields);
     field_files.emplace_back(state.time, fields);
-    if (is_first_rank)
-      {
-        if (!scene.tools.empty())
-          {
-            const std::string tools = fmt::format("fields/tools_{:05}.vtu", state.step);
-            write_tools(scene, state.time, folder + "/" + tools);
-            tool_files.emplace_back(state.time, tools);
-          }
-        write_collections();
-      }
+    on_first_rank(state.communicator, [&] {
+      if (!scene.tools.empty())
+        {
+          const std::string tools = fmt::format("fields/tools_{:05}.vtu", state.step);
+          write_tools(scene, state.time, folder + "/" + tools);
+          tool_files.emplace_back(state.time, tools);
+        }
+      write_collections();
+    });
   }
 
 

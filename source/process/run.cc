@@ -161,6 +161,8 @@ namespace axiforge::process
     if (folder.empty())
       folder = "results/" + std::filesystem::path(file.path()).stem().string();
 
+    const std::string head =
+        "# Names of files in here count from the folder of " + file.path() + ".\n";
     const Progress  progress(scene, quiet);
     output::Results results(
         scene, state, folder,
@@ -174,7 +176,7 @@ namespace axiforge::process
         while (state.time < scene.end_time() * (1 - 1e-12) && state.step < scene.time.most_steps)
           {
             const double time_step = choose_step_size(scene, state, record);
-            record                 = advance(scene, state, solver, time_step);
+            record                 = advance(scene, state, solver, time_step, record);
             results.write(state, record);
             progress.step(record);
             sum.add(record.times);

@@ -10,6 +10,9 @@ namespace axiforge::process
 
   namespace
   {
+    /// A step is at most so many times as long as the one before.
+    constexpr double largest_growth = 1.5;
+
     /// Time in which the nodes of some cell move against each other by its own size [s].
     double shortest_distortion_time(const State &state)
     {
@@ -96,17 +99,21 @@ namespace axiforge::process
             step = std::min(step, limits.largest_motion * shortest_distortion_time(state));
           }
       }
-    if (last.repeats > 0)
-      step = std::min(step, 1.5 * last.time_step);
+
     // What is left is shared out evenly, so that the last step is no splinter.
     return left / std::max(1., std::ceil(left / step - 1e-6));
   }
 
 
-  StepRecord
-  advance(const scene::Scene &scene, State &state, solvers::FlowSolver &solver, const double wanted)
+  StepRecord advance(const scene::Scene  &scene,
+                     State               &state,
+                     solvers::FlowSolver &solver,
+                     const double         wanted,
+                     const StepRecord    &last)
   {
-    double       time_step = wanted;
+    // After steps that had to be shortened the length comes back by and by.
+    double time_step =
+        last.time_step > 0 ? std::min(wanted, largest_growth * last.time_step) : wanted;
     unsigned int repeats = 0, iterations = 0;
     StepTimes    times;
     for (;;)

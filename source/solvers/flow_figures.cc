@@ -171,7 +171,7 @@ namespace axiforge::solvers
         const Vector2 total  = MPI::sum(force[tool], state.communicator);
         const Vector2 speed  = contact->tool_velocity(tool);
         const double  along  = speed[1] < 0 ? -1 : 1;
-        entry.force          = along * total[1];
+        entry.force          = along * total[1] + 0.; // a tool out of contact feels 0, not -0
         entry.radial_force   = total[0];
         entry.contact_radius = MPI::max(radius[tool], state.communicator);
         record.power_tools += total * speed;

@@ -15,6 +15,9 @@ namespace axiforge::solvers
     /// reaction says little.
     constexpr double release_residual = 1e-2;
 
+    /// Share of the characteristic forces and rates below which a workpiece counts as at rest.
+    constexpr double at_rest = 1e-3;
+
     /// Share of the size of the workpiece that positions are exact to.
     constexpr double round_off = 1e-13;
 
@@ -30,7 +33,8 @@ namespace axiforge::solvers
       , theta(scene.time.scheme() == scene::TimeScheme::midpoint ? 0.5 : 0.)
   {
     const double rate = scene.characteristic_rate;
-    lambda            = scene.flow.penalty * scene.material.flow_stress(0, rate).value / (3 * rate);
+    reference_stress  = scene.material.flow_stress(0, rate).value;
+    lambda            = scene.flow.penalty * reference_stress / (3 * rate);
 
     velocity.reinit(state.velocity);
     increment.reinit(velocity);
@@ -170,15 +174,15 @@ namespace axiforge::solvers
         result.record.iterations = iteration;
         result.record.residual   = norms.residual;
         result.record.divergence = norms.divergence;
-        result.record.set_changes += iteration > 0 ? changes : 0;
+        result.record.set_changes += changes;
         if (!std::isfinite(norms.residual + norms.divergence + norms.constraint))
           {
             failure = "the iteration ran into numbers that are not finite";
             break;
           }
         const double tolerance = scene.flow.tolerance;
-        if (iteration > 0 && changes == 0 && norms.residual <= tolerance &&
-            norms.divergence <= tolerance && norms.constraint <= tolerance)
+        if (changes == 0 && norms.residual <= tolerance && norms.divergence <= tolerance &&
+            norms.constraint <= tolerance)
           {
             if (state.step == 0 && passes < first_step_passes &&
                 friction->refresh_lagged_rates(points))
@@ -225,6 +229,11 @@ namespace axiforge::solvers
         move_dual = true;
       }
 
+    if (!result.converged && !held_axially())
+      failure =
+          "nothing holds the workpiece along z: no tool touches it from both sides, and there is "
+          "neither a symmetry line nor a boundary with an axial velocity (" +
+          failure + ")";
     times.factor = system->factor_seconds - factor_before;
     times.solve  = system->solve_seconds - solve_before;
     times.total  = total.wall_time();
@@ -233,6 +242,16 @@ namespace axiforge::solvers
     result.failure      = failure;
     result.record.times = times;
     return result;
+  }
+
+
+  bool FlowSolver::held_axially() const
+  {
+    unsigned int n = 0;
+    for (const NodeFrame &frame : frames)
+      for (unsigned int i = 0; i < 2; ++i)
+        n += frame.fixed[i] && std::abs(frame.axis[i][1]) > 0.02;
+    return MPI::sum(n, state.communicator) > 0;
   }
 
 
@@ -262,10 +281,13 @@ namespace axiforge::solvers
     force      = MPI::sum(force, state.communicator);
     reference  = MPI::sum(reference, state.communicator);
     constraint = MPI::max(constraint, state.communicator);
-    return { reference > 0 ? std::sqrt(force / reference) : 1.,
-             rate_square > 0 ? std::sqrt(divergence_square / rate_square) : 1.,
-             std::max(0., constraint - round_off * scene.size / time_step) /
-                 scene.characteristic_speed };
+    // Floors, for a workpiece at rest (a tool that has not arrived) or in rigid motion.
+    const double size        = scene.size;
+    const double least_force = at_rest * reference_stress * size * size;
+    const double least_rate = at_rest * scene.characteristic_rate * std::sqrt(state.initial_volume);
+    return { std::sqrt(force) / std::max(std::sqrt(reference), least_force),
+             std::sqrt(divergence_square) / std::max(std::sqrt(rate_square), least_rate),
+             std::max(0., constraint - round_off * size / time_step) / scene.characteristic_speed };
   }
 
 

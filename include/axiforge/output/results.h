@@ -23,8 +23,9 @@ namespace axiforge::output
 
   /**
    * Writes the folder of a run: `input.prm`, `parameters.prm`, `versions.txt`, `history.csv` (one
-   * row per accepted step), VTU files in `fields/` with `fields.pvd` and `tools.pvd`. Every file appears
-   * whole or not at all; a row of the history is written at once. All functions are collective.
+   * row per accepted step), VTU files in `fields/` with `fields.pvd` and `tools.pvd`. Every file
+   * appears whole or not at all; a row of the history is written at once. All functions are
+   * collective.
    */
   class Results
   {
@@ -52,7 +53,6 @@ namespace axiforge::output
 
     const scene::Scene                         &scene;
     std::string                                 folder;
-    bool                                        is_first_rank;
     std::optional<CsvFile>                      history;                 ///< first rank only
     std::vector<std::pair<double, std::string>> field_files, tool_files; ///< time, name
     unsigned int                                last_fields_step   = static_cast<unsigned int>(-1);

@@ -11,16 +11,20 @@ namespace axiforge::process
 {
   /**
    * Length of the next step [s]: as given in the scene, or from the reduction, the strain increment
-   * and the motion of the nodes; never beyond the end of the run or a jump of a tool's velocity,
-   * and at most half as long again as the last one after a step had to be repeated. Collective.
+   * and the motion of the nodes; never beyond the end of the run or a jump of a tool's velocity.
+   * Collective.
    */
   double choose_step_size(const scene::Scene &scene, const State &state, const StepRecord &last);
 
   /**
    * One accepted step: solves the flow, moves the state, returns the figures. A step that fails (no
-   * convergence, a cell that would turn over) is repeated with half its length.
+   * convergence, a cell that would turn over) is repeated with half its length; the step is at most
+   * half as long again as the last one.
    * @throws ComputationError that says where, at which time and stroke, and what to try
    */
-  StepRecord
-  advance(const scene::Scene &scene, State &state, solvers::FlowSolver &solver, double time_step);
+  StepRecord advance(const scene::Scene  &scene,
+                     State               &state,
+                     solvers::FlowSolver &solver,
+                     double               time_step,
+                     const StepRecord    &last = StepRecord());
 } // namespace axiforge::process

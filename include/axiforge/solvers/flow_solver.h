@@ -83,6 +83,7 @@ namespace axiforge::solvers
     void  add_boundary_pressure();
     void  add_friction_forces();
     Norms measure() const;
+    bool  held_axially() const;
 
     /// Nodal forces that contact and kinematic conditions have to balance: internal - external +
     /// friction, with ghosts.
@@ -107,6 +108,7 @@ namespace axiforge::solvers
     const State        &state;
     double              theta;  ///< 1/2 or 0: where in the step the equations are written
     double              lambda; ///< penalty [MPa s]
+    double reference_stress;    ///< flow stress at strain 0 and the characteristic rate [MPa]
 
     std::unique_ptr<LinearSystem>          system;
     SystemNodes                            system_nodes;
