@@ -174,7 +174,8 @@ namespace axiforge::solvers
         result.record.iterations = iteration;
         result.record.residual   = norms.residual;
         result.record.divergence = norms.divergence;
-        result.record.set_changes += changes;
+        // Finding the first contact at all is no change.
+        result.record.set_changes += state.step == 0 && iteration == 0 ? 0 : changes;
         if (!std::isfinite(norms.residual + norms.divergence + norms.constraint))
           {
             failure = "the iteration ran into numbers that are not finite";
