@@ -228,6 +228,47 @@ INSTANTIATE_TEST_SUITE_P(RateExponent,
                          });
 
 
+// Where two parts with a velocity each meet, both hold: a tube whose end planes are held as named
+// parts is the tube between symmetry planes.
+TEST(PrescribedParts, BothHoldInTheirCorners)
+{
+  TemporaryFolder   folder;
+  const std::string tube = folder.file("tube.geo", R"(
+Point(1) = {10, 0, 0};
+Point(2) = {20, 0, 0};
+Point(3) = {20, 5, 0};
+Point(4) = {10, 5, 0};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {4, 3};
+Line(4) = {1, 4};
+Curve Loop(1) = {1, 2, -3, -4};
+Plane Surface(1) = {1};
+Transfinite Curve{1, 3} = 5;
+Transfinite Curve{2, 4} = 3;
+Transfinite Surface{1} = {1, 2, 3, 4};
+Recombine Surface{1};
+Physical Surface("workpiece") = {1};
+Physical Curve("inner") = {4};
+Physical Curve("bottom") = {1};
+Physical Curve("top") = {3};
+)");
+  const Entries     inner =
+      at_start + power_law(100, 0.2) + Entries{ "Boundary inner/Velocity r = 5 / r" };
+  FlowProblem symmetric(inner + Entries{ "Boundaries = inner" } +
+                        workpiece(geometry("tube.geo"), "RadialCells = 4, AxialCells = 2"));
+  FlowProblem held(inner +
+                   Entries{ "Boundaries = inner, bottom, top", "Boundary bottom/Velocity z = 0",
+                            "Boundary top/Velocity z = 0" } +
+                   workpiece(tube));
+  const auto  expected = symmetric.solve_at_start(), result = held.solve_at_start();
+  EXPECT_NEAR(result.record.boundaries[0].pressure / expected.record.boundaries[0].pressure, 1,
+              1e-9);
+  for (unsigned int node = 0; node < held.state.tables.n_nodes; ++node)
+    EXPECT_NEAR(result.velocity.local_element(2 * node + 1), 0, 1e-9);
+}
+
+
 int main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);

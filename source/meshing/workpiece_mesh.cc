@@ -190,8 +190,14 @@ namespace axiforge::meshing
           {
             gmsh::model::mesh::clear();
             gmsh::option::setNumber("Mesh.RecombinationAlgorithm", attempted_recombination);
-            for (const int surface : surfaces) // which may have its own: 8 must not get through
-              gmsh::model::mesh::setAlgorithm(2, surface, static_cast<int>(attempted_algorithm));
+            for (const int surface : surfaces)
+              {
+                // It may have its own: 8 must not get through.
+                gmsh::model::mesh::setAlgorithm(2, surface, static_cast<int>(attempted_algorithm));
+                // Mesh.Smoothing is for unstructured surfaces: it would undo the grading of a
+                // transfinite one, which looks at this constraint first.
+                gmsh::model::mesh::setSmoothing(2, surface, 0);
+              }
             std::srand(1); // gmsh shifts points at random, and seeds only once per process
             gmsh::model::mesh::generate(2);
             if (count_non_quadrilaterals(surfaces) == 0 && smallest_corner_sine(surfaces) > 0.1)

@@ -278,7 +278,8 @@ namespace axiforge::solvers
                                std::vector<NodeFrame> &frames) const
   {
     frames.clear();
-    const double middle = state.time + 0.5 * time_step;
+    // Prescribed velocities hold where and when the equations do.
+    const double theta = scene.time.scheme() == scene::TimeScheme::midpoint ? 0.5 : 0.;
     for (unsigned int b = 0; b < nodes.size(); ++b)
       {
         const BoundaryNode &node = state.tables.boundary_nodes[b];
@@ -300,17 +301,20 @@ namespace axiforge::solvers
           prescribe(Vector2({ 1., 0. }), -v[0]);
         if (node.on_symmetry)
           prescribe(node.symmetry_normal, -(v * node.symmetry_normal));
-        if (const unsigned int c = condition_of(node.prescribed); c != no_tool)
-          {
-            const Point x = state.node_position(node.node) + 0.5 * time_step * v;
-            for (unsigned int i = 0; i < 2; ++i)
-              if (scene.boundaries[c].velocity[i])
-                {
-                  Vector2 d;
-                  d[i] = 1;
-                  prescribe(d, scene.boundaries[c].velocity[i](x, middle) - v[i]);
-                }
-          }
+        for (const dealii::types::boundary_id id : node.prescribed)
+          if (const unsigned int c = condition_of(id); c != no_tool)
+            {
+              const Point x = state.node_position(node.node) + theta * time_step * v;
+              for (unsigned int i = 0; i < 2; ++i)
+                if (scene.boundaries[c].velocity[i])
+                  {
+                    Vector2 d;
+                    d[i] = 1;
+                    prescribe(d,
+                              scene.boundaries[c].velocity[i](x, state.time + theta * time_step) -
+                                  v[i]);
+                  }
+            }
         const NodeContact &contact = nodes[b];
         for (unsigned int i = 0; i < 2; ++i)
           if (contact.tool[i] != no_tool)

@@ -230,7 +230,7 @@ namespace axiforge::solvers
     // The pressure follows the edge in the present configuration; three Gauss points each.
     const double gauss[3]  = { -std::sqrt(0.6), 0, std::sqrt(0.6) };
     const double weight[3] = { 5. / 9, 8. / 9, 5. / 9 };
-    const double middle    = state.time + 0.5 * time_step;
+    const double time      = state.time + theta * time_step;
     for (const BoundaryEdge &edge : state.tables.edges)
       {
         const unsigned int condition = edge.owned ? contact->condition_of(edge.id) : no_tool;
@@ -254,7 +254,7 @@ namespace axiforge::solvers
             const double  sign = edge.side == 1 || edge.side == 2 ? 1 : -1;
             const Vector2 outward({ sign * along[1], -sign * along[0] });
             const double  load =
-                -weight[q] * 2 * M_PI * x[0] * scene.boundaries[condition].pressure(x, middle);
+                -weight[q] * 2 * M_PI * x[0] * scene.boundaries[condition].pressure(x, time);
             const auto &local = InterfaceFriction::side_nodes[edge.side];
             for (unsigned int a = 0; a < 3; ++a)
               for (unsigned int c = 0; c < 2; ++c)

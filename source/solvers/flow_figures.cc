@@ -209,11 +209,20 @@ namespace axiforge::solvers
         double     power = 0, force = 0, flux = 0;
         if (prescribed)
           for (const BoundaryNode &node : state.tables.boundary_nodes)
-            if (node.owned && contact->condition_of(node.prescribed) == i)
+            for (unsigned int c = 0; c < 2 && node.owned; ++c)
               {
-                const Vector2 f = node_value(internal, node.node);
-                power += f * node_value(velocity, node.node);
-                force += f[1];
+                // Where two parts meet, the first that prescribes a component supplies its force.
+                unsigned int owner = no_tool;
+                for (const dealii::types::boundary_id id : node.prescribed)
+                  if (const unsigned int condition = contact->condition_of(id);
+                      owner == no_tool && condition != no_tool &&
+                      scene.boundaries[condition].velocity[c])
+                    owner = condition;
+                if (owner != i)
+                  continue;
+                const double f = node_value(internal, node.node)[c];
+                power += f * node_value(velocity, node.node)[c];
+                force += c == 1 ? f : 0;
               }
         for (const BoundaryEdge &edge : state.tables.edges)
           {

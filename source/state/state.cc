@@ -94,7 +94,6 @@ namespace axiforge
                       BoundaryNode entry{};
                       entry.node           = node;
                       entry.owned          = node < tables.n_owned_nodes;
-                      entry.prescribed     = numbers::invalid_boundary_id;
                       entry.axis_neighbour = no_tool;
                       tables.boundary_nodes.push_back(entry);
                     }
@@ -131,8 +130,8 @@ namespace axiforge
           else
             {
               node.free_surface = true;
-              if (edge.id != surface)
-                node.prescribed = edge.id;
+              if (edge.id != surface && edge.id != node.prescribed[0])
+                node.prescribed[node.prescribed[0] != numbers::invalid_boundary_id] = edge.id;
             }
         }
 

@@ -30,7 +30,7 @@ namespace axiforge::laws
     double                thickness = 0.;  // t [mm]
     double                beta      = 0.;  // f'/(1 - f')
     double     smallest_rate       = 1e-6; // eps0 > 0 of epsdot_reg = sqrt(epsdot^2 + eps0^2) [1/s]
-    SmmElement element             = SmmElement::serendipity;
+    SmmElement element             = SmmElement::lagrange;
     bool       workpiece_viscosity = false; // take `viscosity` instead of the material law
     bool       picard = false; // leave the derivative of the viscosity out of the stiffness
   };

@@ -38,14 +38,16 @@ namespace axiforge
   /// A node of the boundary and the kinematic conditions it has for ever.
   struct BoundaryNode
   {
-    unsigned int               node;        ///< local number
-    bool                       owned;       ///< by this rank
-    bool                       on_axis;     ///< v_r = 0
-    bool                       on_symmetry; ///< velocity along the symmetry line only
-    Vector2                    symmetry_normal;
-    bool                       free_surface; ///< may touch tools
-    dealii::types::boundary_id prescribed =
-        dealii::numbers::invalid_boundary_id; ///< velocity group
+    unsigned int node;        ///< local number
+    bool         owned;       ///< by this rank
+    bool         on_axis;     ///< v_r = 0
+    bool         on_symmetry; ///< velocity along the symmetry line only
+    Vector2      symmetry_normal;
+    bool         free_surface; ///< may touch tools
+    /// Named parts of the boundary that the node belongs to: two where they meet.
+    std::array<dealii::types::boundary_id, 2> prescribed = {
+      { dealii::numbers::invalid_boundary_id, dealii::numbers::invalid_boundary_id }
+    };
     unsigned int axis_neighbour =
         no_tool; ///< boundary node whose contact status an axis node takes
   };
