@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+
+// Contact with corners, with two tools at once, with curved profiles, and its release. Every step
+// of every run is held to the conditions of contact themselves: no node is inside a tool, a node
+// that touches lies on the profile, and no reaction pulls.
+
+#include "flow_fixture.h"
+
+#include <axiforge/process/step.h>
+
+using namespace axiforge;
+using namespace axiforge::testing_support;
+
+namespace
+{
+  const Entries material = swift_power(100, 0.05, 0.2, 0.05);
+
+  Entries tool(const std::string &name, const std::string &file, const std::string &parameters = "")
+  {
+    return { "Tool " + name + "/Geometry file = " + file,
+             "Tool " + name + "/Geometry parameters = " + parameters };
+  }
+
+  Entries moving(const std::string &name, const double v)
+  {
+    return { "Tool " + name + "/Motion/Type = constant velocity",
+             "Tool " + name + "/Motion/Velocity = 0, " + number(v) };
+  }
+
+  void expect_conditions(const FlowProblem &problem)
+  {
+    const State &state            = problem.state;
+    double       largest_reaction = 0;
+    for (const NodeContact &contact : state.contacts)
+      largest_reaction = std::max(largest_reaction, contact.reaction[0]);
+    for (unsigned int b = 0; b < state.contacts.size(); ++b)
+      {
+        const BoundaryNode &node    = state.tables.boundary_nodes[b];
+        const NodeContact  &contact = state.contacts[b];
+        if (!node.free_surface)
+          continue;
+        for (const scene::Tool &tool : problem.scene.tools)
+          {
+            std::array<tools::Contact, 2> found;
+            const Point x = state.node_position(node.node) - tool.motion.displacement(state.time);
+            if (tool.profile.find(x, 0, found) > 0)
+              {
+                EXPECT_GT(found[0].gap, -1e-6 * problem.scene.size) << tool.name << " at " << x;
+              }
+          }
+        if (contact.active())
+          {
+            const scene::Tool            &touched = problem.scene.tools[contact.tool[0]];
+            std::array<tools::Contact, 2> found;
+            const Point                   x =
+                state.node_position(node.node) - touched.motion.displacement(state.time);
+            ASSERT_GT(touched.profile.find(x, problem.scene.size, found), 0u);
+            EXPECT_NEAR(found[0].gap, 0, 1e-6 * problem.scene.size);
+            if (node.axis_neighbour == no_tool) // there the weight is zero
+              {
+                EXPECT_GT(contact.reaction[0], -1e-3 * largest_reaction);
+              }
+          }
+      }
+  }
+
+  std::vector<StepRecord> run(FlowProblem &problem)
+  {
+    std::vector<StepRecord> records(1);
+    while (problem.state.time < problem.scene.end_time() * (1 - 1e-12))
+      {
+        const double step = process::choose_step_size(problem.scene, problem.state, records.back());
+        records.push_back(
+            process::advance(problem.scene, problem.state, problem.solver(), step, records.back()));
+        expect_conditions(problem);
+        EXPECT_EQ(records.back().repeats, 0u);
+        EXPECT_LT(std::abs(records.back().power_residual), 1e-4 * records.back().power_tools);
+        EXPECT_LT(std::abs(records.back().relative_volume_change), 1e-4);
+      }
+    records.erase(records.begin());
+    return records;
+  }
+} // namespace
+
+
+// Backward extrusion: wall and bottom are two tools, and the node in their corner touches both, on
+// the faces of a concave corner of one tool as well.
+TEST(Corner, holds_a_node_between_two_tools_or_two_faces)
+{
+  TemporaryFolder   folder;
+  const std::string wall = folder.file("wall.csv", "r_mm,z_mm\n25,0\n25,100\n");
+  const std::string die  = folder.file("die.csv", "r_mm,z_mm\n0,0\n25,0\n25,100\n");
+  const Entries     common =
+      Entries{ "Process/End stroke = 1", "Process/Driving tool = punch",
+               "Time stepping/Stroke per step = 0.25" } +
+      workpiece(geometry("cylinder_full.geo"),
+                "Radius = 25, Height = 30, RadialCells = 10, AxialCells = 12") +
+      material + tool("punch", geometry("punch.geo"), "Radius = 12, EdgeRadius = 4, Z = 30") +
+      moving("punch", -1);
+  FlowProblem two(common + Entries{ "Tools = punch, wall, bottom" } + tool("wall", wall) +
+                  tool("bottom", geometry("platen.geo"), "Z = 0"));
+  FlowProblem one(common + Entries{ "Tools = punch, die" } + tool("die", die));
+  const auto  of_two = run(two), of_one = run(one);
+  ASSERT_EQ(of_two.size(), of_one.size());
+  for (unsigned int i = 0; i < of_two.size(); ++i)
+    {
+      // Without friction the wall takes no axial force, so the bottom takes that of the punch.
+      EXPECT_NEAR(of_two[i].tools[1].force / of_two[i].tools[0].force, 0, 1e-4);
+      EXPECT_NEAR(of_two[i].tools[2].force / of_two[i].tools[0].force, 1, 1e-4);
+      EXPECT_NEAR(of_one[i].tools[1].force / of_two[i].tools[0].force, 1, 1e-4);
+      EXPECT_NEAR(of_one[i].tools[0].force / of_two[i].tools[0].force, 1, 1e-4);
+    }
+  for (const FlowProblem *problem : { &two, &one })
+    {
+      unsigned int n_double = 0;
+      for (unsigned int b = 0; b < problem->state.contacts.size(); ++b)
+        if (problem->state.contacts[b].tool[1] != no_tool)
+          {
+            ++n_double;
+            const Point x =
+                problem->state.node_position(problem->state.tables.boundary_nodes[b].node);
+            EXPECT_NEAR(x.distance(Point(25, 0)), 0, 1e-9);
+          }
+      EXPECT_EQ(n_double, 1u);
+    }
+}
+
+
+// A container that the barrel runs into: contact that grows along a wall from the middle.
+TEST(Container, stops_the_barrel)
+{
+  TemporaryFolder folder;
+  FlowProblem     problem(Entries{ "Tools = upper, wall", "Process/End stroke = 3",
+                               "Time stepping/Stroke per step = 0.25" } +
+                          workpiece(geometry("cylinder.geo"), "RadialCells = 8, AxialCells = 8") +
+                          material + platen("upper", 25, -0.25, { "Law = smm", "Factor = 0.5" }) +
+                          tool("wall", folder.file("wall.csv", "r_mm,z_mm\n27,-1\n27,100\n")));
+  const auto      records = run(problem);
+  EXPECT_EQ(records.front().tools[1].contact_radius, 0);
+  EXPECT_NEAR(records.back().tools[1].contact_radius, 27, 1e-6);
+  EXPECT_LT(records.back().largest_radius, 27 * (1 + 2e-3)); // edges bulge between their nodes
+  EXPECT_LT(records.back().tools[1].radial_force, 0);
+}
+
+
+// A punch in the middle of a thin disc lifts its rim off the platen.
+TEST(Punch, lifts_the_rim)
+{
+  FlowProblem problem(
+      Entries{ "Tools = punch, lower", "Process/End stroke = 1", "Process/Driving tool = punch",
+               "Time stepping/Stroke per step = 0.1" } +
+      workpiece(
+          geometry("billet_for_punch.geo"),
+          "Radius = 30, Height = 12, InnerCells = 8, OuterCells = 8, AxialCells = 8, Grading = 2") +
+      material + tool("punch", geometry("punch.geo"), "Radius = 10, EdgeRadius = 3, Z = 12") +
+      moving("punch", -1) + tool("lower", geometry("platen.geo"), "Z = 0"));
+  const auto records = run(problem);
+  for (const StepRecord &record : records)
+    EXPECT_NEAR(record.tools[1].force / record.tools[0].force, 1, 1e-4);
+  EXPECT_LT(records.back().tools[1].contact_radius, 25);
+  double rim = 1e300; // height of the outermost node of the lower face
+  for (const BoundaryNode &node : problem.state.tables.boundary_nodes)
+    if (const Point x = problem.state.node_position(node.node); x[0] > 29.5)
+      rim = std::min(rim, x[1]);
+  EXPECT_GT(rim, 0.01);
+}
+
+
+// A conical tool with a rounded corner: the force on the frictionless cone balances the symmetry
+// plane by the exact power balance, and contact runs from the tip over the corner up the cone.
+TEST(Cone, is_followed_over_its_rounded_corner)
+{
+  FlowProblem problem(
+      Entries{ "Tools = cone", "Process/End stroke = 3", "Time stepping/Stroke per step = 0.15" } +
+      workpiece(geometry("cylinder.geo"), "RadialCells = 16, AxialCells = 12") + material +
+      tool("cone", geometry("cone_tool.geo"),
+           "HalfAngle = 75, TipRadius = 5, CornerRadius = 3, Radius = 60, Z = 25") +
+      moving("cone", -0.25));
+  const auto records = run(problem);
+  double     last    = 0;
+  for (const StepRecord &record : records)
+    {
+      EXPECT_GE(record.tools[0].contact_radius, last - 0.02); // nodes slide, too
+      last = record.tools[0].contact_radius;
+    }
+  EXPECT_GT(last, 12);
+}
+
+int main(int argc, char **argv)
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  ::testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}
