@@ -8,6 +8,7 @@
 #include <axiforge/base/errors.h>
 #include <axiforge/meshing/initial_state.h>
 #include <axiforge/output/results.h>
+#include <axiforge/process/mesh_change.h>
 #include <axiforge/process/run.h>
 #include <axiforge/process/step.h>
 
@@ -65,6 +66,21 @@ namespace axiforge::process
                          record.step, record.time, record.stroke, forces, record.iterations,
                          record.cells, duration(left),
                          record.repeats ? fmt::format("  (repeated {} times)", record.repeats) : "")
+                  << std::flush;
+      }
+
+      void mesh(const meshing::AdaptReport &report) const
+      {
+        if (quiet || !report.changed)
+          return;
+        std::cout << fmt::format("mesh adapted: {} cells, estimated error of the stress {:.2g}, "
+                                 "changes of volume "
+                                 "{:.1e}, of the strain's integral {:.1e}{}\n",
+                                 report.cells, report.estimated_error, report.volume_change,
+                                 report.strain_change,
+                                 report.refused ? fmt::format(", {} families kept for the outline",
+                                                              report.refused)
+                                                : "")
                   << std::flush;
       }
 
@@ -167,19 +183,21 @@ namespace axiforge::process
     output::Results results(
         scene, state, folder,
         { file.resolved_text(), parameters.print(), versions(options, communicator) });
-    solvers::FlowSolver solver(scene, state);
-    StepRecord          record;
-    StepTimes           sum;
+    auto       solver = std::make_unique<solvers::FlowSolver>(scene, state);
+    StepRecord record;
+    StepTimes  sum;
     progress.start(state);
     try
       {
+        adapt_at_start(scene, state, solver, choose_step_size(scene, state, record));
         while (state.time < scene.end_time() * (1 - 1e-12) && state.step < scene.time.most_steps)
           {
             const double time_step = choose_step_size(scene, state, record);
-            record                 = advance(scene, state, solver, time_step, record);
+            record                 = advance(scene, state, *solver, time_step, record);
             results.write(state, record);
             progress.step(record);
             sum.add(record.times);
+            progress.mesh(adapt_if_due(scene, state, solver));
           }
       }
     catch (const ComputationError &)
@@ -188,6 +206,6 @@ namespace axiforge::process
         throw;
       }
     results.write_fields(state);
-    progress.end(state, sum, solver.linear_system().analyse_seconds, folder);
+    progress.end(state, sum, solver->linear_system().analyse_seconds, folder);
   }
 } // namespace axiforge::process

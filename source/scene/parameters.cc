@@ -115,6 +115,43 @@ namespace axiforge::scene
   }
 
 
+  void RefinementParameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter(
+        "Enabled", enabled,
+        "Whether cells are divided and joined during the run where the error indicator "
+        "(recovery of the deviatoric stress) says so.");
+    prm.add_parameter("Every steps", every_steps, "The mesh is adapted after so many steps.",
+                      Patterns::Integer(1));
+    prm.add_parameter(
+        "Start cycles", start_cycles,
+        "The first step is solved so many times on meshes adapted in between before it "
+        "counts.",
+        Patterns::Integer(0));
+    prm.add_parameter("Refine fraction", refine_fraction,
+                      "The cells with the largest indicators that hold this share of their sum are "
+                      "divided.",
+                      Patterns::Double(0, 1));
+    prm.add_parameter(
+        "Coarsen fraction", coarsen_fraction,
+        "Families of cells with the smallest indicators that hold this share of the sum "
+        "are joined, where the outline stays as it is.",
+        Patterns::Double(0, 1));
+    prm.add_parameter(
+        "Largest level", largest_level,
+        "How many times a cell of the file's mesh may be divided, the initial refinement "
+        "levels counted.",
+        Patterns::Integer(0, 20));
+    prm.add_parameter("Most cells", most_cells, "No cell is divided when there are so many.",
+                      Patterns::Integer(1));
+    prm.add_parameter(
+        "Smallest size", smallest_size,
+        "Cells are not divided into smaller ones than this [mm] (their shorter diagonal). "
+        "0: not used.",
+        Patterns::Double(0));
+  }
+
+
   void OutputParameters::declare(ParameterHandler &prm)
   {
     prm.add_parameter("Directory", directory,
@@ -223,6 +260,9 @@ namespace axiforge::scene
     prm.leave_subsection();
     prm.enter_subsection("Flow solver");
     flow.declare(prm);
+    prm.leave_subsection();
+    prm.enter_subsection("Refinement");
+    refinement.declare(prm);
     prm.leave_subsection();
     prm.enter_subsection("Output");
     output.declare(prm);

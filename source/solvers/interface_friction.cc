@@ -16,8 +16,8 @@ namespace axiforge::solvers
 
 
     /// A value of the Gauss points, continued to a node of a side and kept near their range.
-    template <typename Value>
-    double continue_to_side(const FlowPoint   *points,
+    template <typename PointData, typename Value>
+    double continue_to_side(const PointData   *points,
                             const unsigned int side,
                             const unsigned int a,
                             const Value       &value)
@@ -35,9 +35,9 @@ namespace axiforge::solvers
     }
 
 
-    template <typename Value>
+    template <typename PointData, typename Value>
     std::array<double, 3>
-    side_values(const FlowPoint *points, const unsigned int side, const Value &value)
+    side_values(const PointData *points, const unsigned int side, const Value &value)
     {
       std::array<double, 3> values;
       for (unsigned int a = 0; a < 3; ++a)
@@ -68,6 +68,13 @@ namespace axiforge::solvers
     caps.resize(stored.size());
     if (layer)
       layers.resize(stored.size());
+    // After a change of the mesh there are no rates of edges: those of the cells are as good.
+    if (lags && state.step > 0)
+      for (unsigned int e = 0; e < stored.size(); ++e)
+        if (const BoundaryEdge &edge = state.tables.edges[e];
+            edge.owned && stored[e].strain_rate == std::array<double, 3>{})
+          stored[e].strain_rate = side_values(state.cell_history[edge.cell].strain_rate.data(),
+                                              edge.side, [](const double rate) { return rate; });
   }
 
 

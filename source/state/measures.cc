@@ -13,6 +13,12 @@ namespace axiforge
     {
       double shape[13][9], derivative[13][9][2], weight[13];
 
+      static const Tables &get()
+      {
+        static const Tables tables{ dealii::FE_Q<2>(2) };
+        return tables;
+      }
+
       explicit Tables(const dealii::FiniteElement<2> &element)
       {
         const dealii::QGauss<2> gauss(3);
@@ -47,8 +53,8 @@ namespace axiforge
 
   Measures measure(const State &state)
   {
-    static const Tables tables{ dealii::FE_Q<2>(2) };
-    Measures            result{};
+    const Tables &tables = Tables::get();
+    Measures      result{};
     result.largest_radius    = 0;
     result.lowest            = 1e300;
     result.highest           = -1e300;
@@ -110,6 +116,30 @@ namespace axiforge
       result.worst_place[c] =
           MPI::max(mine == result.smallest_jacobian ? result.worst_place[c] : -1e300, comm);
     return result;
+  }
+
+
+  double integral(const State                                     &state,
+                  const unsigned int                               cell,
+                  const std::function<double(unsigned int point)> &quantity)
+  {
+    const Tables &tables = Tables::get();
+    double        sum    = 0;
+    for (unsigned int q = 0; q < 9; ++q)
+      {
+        double radius = 0, J[2][2] = { { 0, 0 }, { 0, 0 } };
+        for (unsigned int a = 0; a < 9; ++a)
+          {
+            const Point x = state.node_position(state.tables.cells[cell][a]);
+            radius += tables.shape[q][a] * x[0];
+            for (unsigned int i = 0; i < 2; ++i)
+              for (unsigned int j = 0; j < 2; ++j)
+                J[i][j] += x[i] * tables.derivative[q][a][j];
+          }
+        sum += 2 * M_PI * radius * (J[0][0] * J[1][1] - J[0][1] * J[1][0]) * tables.weight[q] *
+               quantity(q);
+      }
+    return sum;
   }
 
 

@@ -82,7 +82,23 @@ namespace axiforge::scene
     void declare(dealii::ParameterHandler &prm);
   };
 
+  /// `subsection Refinement`
+  struct RefinementParameters
+  {
+    bool         enabled          = false;
+    unsigned int every_steps      = 5;
+    unsigned int start_cycles     = 0;
+    double       refine_fraction  = 0.3;
+    double       coarsen_fraction = 0.02;
+    unsigned int largest_level    = 3;
+    unsigned int most_cells       = 20000;
+    double       smallest_size    = 0;
+
+    void declare(dealii::ParameterHandler &prm);
+  };
+
   /// `subsection Output`
+
   struct OutputParameters
   {
     std::string  directory;
@@ -130,6 +146,7 @@ namespace axiforge::scene
     ProcessParameters               process;
     TimeParameters                  time;
     FlowParameters                  flow;
+    RefinementParameters            refinement;
     OutputParameters                output;
     std::string                     directory; ///< of the .prm: relative names are resolved there
 
@@ -190,6 +207,7 @@ namespace axiforge::scene
     ProcessParameters              process;
     TimeParameters                 time;
     FlowParameters                 flow;
+    RefinementParameters           refinement;
     OutputParameters               output;
 
     unsigned int

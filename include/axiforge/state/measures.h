@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
+#include <functional>
+
 #include <axiforge/state/state.h>
 
 namespace axiforge
@@ -19,6 +21,13 @@ namespace axiforge
 
   /// Collective.
   Measures measure(const State &state);
+
+  /// Integral over the body of revolution of a quantity given at the Gauss points of a locally
+  /// owned
+  /// cell, in the present geometry.
+  double integral(const State                                     &state,
+                  unsigned int                                     cell,
+                  const std::function<double(unsigned int point)> &quantity);
 
   /// Largest effective strain at the Gauss points. Collective.
   double largest_strain(const State &state);

@@ -32,6 +32,16 @@ name=two_ranks
 ranks=2 run two_ranks 0 "${scene[@]}"
 compare cholmod/output/history.csv two_ranks/output/history.csv -v rel=1e-6 -v only="$shape"
 
+# Cells divided and joined on the way, with hanging nodes.
+adaptive=(--set "Refinement/Enabled = true" --set "Refinement/Start cycles = 2" --set "Refinement/Every steps = 3"
+  --set "Refinement/Coarsen fraction = 0.05")
+name=adaptive
+run adaptive_one 0 "${scene[@]}" "${adaptive[@]}"
+ranks=2 run adaptive_two 0 "${scene[@]}" "${adaptive[@]}"
+compare adaptive_one/output/history.csv adaptive_two/output/history.csv -v rel=1e-6 -v only="$shape,cells"
+awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) column[$i] = i } END { exit !($column["cells"] > 100) }' \
+  adaptive_one/output/history.csv || fail "no cell has been divided"
+
 # The points stand where no corner of the workpiece meets them.
 name=polyline
 printf '# The platen of platen.geo.\nr_mm, z_mm\n0, 25\n70, 25\n200, 25\n' >scene/platen.csv
