@@ -180,6 +180,8 @@ namespace axiforge::process
             results.write(state, record);
             progress.step(record);
             sum.add(record.times);
+            if (options.on_step)
+              options.on_step(scene, record);
           }
       }
     catch (const ComputationError &)
