@@ -102,6 +102,7 @@ TEST(Richardson, InventsNoOrder)
   EXPECT_EQ(extrapolate(1, 1, 1.5, 2).remark, "not monotone");
   EXPECT_EQ(extrapolate(1, 2, 3, 2).remark, "the differences do not fall");
   EXPECT_EQ(extrapolate(1, 2, 4, 2).remark, "the differences do not fall");
+  EXPECT_EQ(extrapolate(1, 2, 2.99, 2).remark, "the differences do not fall"); // p = 0.014
   EXPECT_EQ(extrapolate(3, 2, 2, 2).remark, "no change beyond rounding");
   EXPECT_EQ(extrapolate(1, NAN, 2, 2).remark, "a value is missing");
   for (const Richardson &none : { extrapolate(1, 2, 1.5, 2), extrapolate(1, 2, 4, 2),
@@ -213,7 +214,7 @@ TEST(Analysis, OrdersInTheStepAreThoseOfTheScheme)
   plan.at         = Place::end;
   plan.quantities = { "force_upper_N", "largest_radius_mm" };
   plan.references = { 1000 + 20 * 10 + 100, NAN };
-  std::vector<Run> runs;
+  std::vector<study::Run> runs;
   for (const unsigned int n : { 5, 10, 20, 40 })
     {
       const double h = 10. / n;
@@ -255,7 +256,7 @@ TEST(Analysis, AFailedRunHasNoValueAtTheEndAndNoOrderCountsIt)
   plan.at         = Place::end;
   plan.quantities = { "largest_radius_mm" };
   plan.references = { NAN };
-  std::vector<Run> runs;
+  std::vector<study::Run> runs;
   for (const unsigned int n : { 5, 10, 20, 40, 80 })
     runs.push_back(run_with(history(
         n, [](double) { return 1.; }, [&](double) { return 25 + 1. / n; })));

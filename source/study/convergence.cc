@@ -6,6 +6,13 @@
 
 namespace axiforge::study
 {
+  namespace
+  {
+    /// Below this a limit would lie many times the last difference away: the sequence tells none.
+    constexpr double least_order = 0.1;
+  } // namespace
+
+
   Richardson
   extrapolate(const double coarse, const double middle, const double fine, const double ratio)
   {
@@ -18,7 +25,7 @@ namespace axiforge::study
       result.remark = "no change beyond rounding";
     else if (first * second <= 0)
       result.remark = "not monotone";
-    else if (std::abs(second) >= std::abs(first))
+    else if (std::abs(first / second) <= std::pow(ratio, least_order))
       result.remark = "the differences do not fall";
     else
       {
@@ -38,7 +45,7 @@ namespace axiforge::study
       result.remark = "a value is missing";
     else if (!(middle > 0))
       result.remark = "no change beyond rounding";
-    else if (coarse / middle <= 2)
+    else if (coarse / middle - 1 <= std::pow(ratio, least_order))
       result.remark = "the differences do not fall";
     else
       {

@@ -104,12 +104,12 @@ namespace axiforge::study
       std::string label(const double tick) const
       {
         if (logarithmic)
-          return fmt::format("{:.4g}", tick);
+          return fmt::format("{:.6g}", tick);
         const double range  = high - low;
         const double larger = std::max(std::abs(low), std::abs(high));
         const int    digits = 2 + static_cast<int>(std::ceil(std::log10(larger / range)));
         return fmt::format("{:.{}g}", std::abs(tick) < 1e-9 * range ? 0. : tick,
-                           std::clamp(digits, 3, 12));
+                           std::clamp(digits, 6, 12));
       }
 
     private:
@@ -185,23 +185,56 @@ namespace axiforge::study
     }
 
 
-    /// The legend stands in the upper or lower right, away from the end of the first line.
-    std::string draw_legend(const Panel &panel, const Axis &y)
+    /// How much of the lines runs through a box.
+    unsigned int covered(const Panel &panel,
+                         const Axis  &x,
+                         const Axis  &y,
+                         const double x0,
+                         const double y0,
+                         const double width,
+                         const double height)
     {
-      double last = top;
-      for (const auto &point : panel.series[0].points)
-        if (can_be_drawn(panel, point))
-          last = y.at(point.second);
+      unsigned int count = 0;
+      for (const Series &series : panel.series)
+        for (std::size_t i = 0; i < series.points.size(); ++i)
+          {
+            const auto &a = series.points[i == 0 ? 0 : i - 1], &b = series.points[i];
+            if (!can_be_drawn(panel, a) || !can_be_drawn(panel, b))
+              continue;
+            for (double part = 0; part <= 1; part += 0.05)
+              {
+                const double px = (1 - part) * x.at(a.first) + part * x.at(b.first);
+                const double py = (1 - part) * y.at(a.second) + part * y.at(b.second);
+                count += px > x0 - 5 && px < x0 + width + 5 && py > y0 - 5 && py < y0 + height + 5;
+              }
+          }
+      return count;
+    }
+
+
+    /// The legend stands in the corner where it covers least.
+    std::string draw_legend(const Panel &panel, const Axis &x, const Axis &y)
+    {
       std::size_t longest = 0;
       for (const Series &series : panel.series)
         longest = std::max(longest, series.label.size());
-      const double height = 18. * panel.series.size() + 8, width = 44 + 6.8 * longest;
-      const double middle = 0.5 * (top + panel_height - bottom);
-      const double x0     = panel_width - right - 8 - width;
-      const double y0     = last > middle ? top + 8 : panel_height - bottom - 8 - height;
-      std::string  out    = fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" "
-                                            "height=\"{:.1f}\" class=\"legend\"/>\n",
-                                        x0, y0, width, height);
+      const double height = 18. * panel.series.size() + 8, width = 46 + 7.1 * longest;
+      double       x0 = 0, y0 = 0;
+      unsigned int least = std::numeric_limits<unsigned int>::max();
+      for (const double corner_x : { panel_width - right - 8 - width, left + 8 })
+        for (const double corner_y : { top + 8, panel_height - bottom - 8 - height })
+          {
+            const unsigned int count = covered(panel, x, y, corner_x, corner_y, width, height);
+            if (count < least)
+              {
+                least = count;
+                x0    = corner_x;
+                y0    = corner_y;
+              }
+          }
+      std::string out = fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" "
+                                    "height=\"{:.1f}\" class=\"legend\"/>\n",
+                                    x0, y0, width, height);
       for (unsigned int i = 0; i < panel.series.size(); ++i)
         {
           const double row = y0 + 13 + 18. * i;
@@ -230,7 +263,7 @@ namespace axiforge::study
       std::string out = draw_axes(panel, x, y);
       for (unsigned int i = 0; i < panel.series.size(); ++i)
         out += draw_series(panel, x, y, panel.series[i], colours[i % std::size(colours)]);
-      return panel.series.empty() ? out : out + draw_legend(panel, y);
+      return panel.series.empty() ? out : out + draw_legend(panel, x, y);
     }
   } // namespace
 

@@ -170,10 +170,11 @@ namespace axiforge::study
     if (plan.at == Place::whole_curve)
       return fmt::format("{}: observed order {:.2f}, estimated error of the last curve {:.3g} rms.",
                          item.name, last.order, last.error);
+    const double share = 100 * last.error / std::abs(last.limit);
     return fmt::format("{}: observed order {:.2f}, extrapolated limit {:.8g}, estimated error of "
-                       "the last value {:.3g} ({:.2g} %).",
+                       "the last value {:.3g}{}.",
                        item.name, last.order, last.limit, last.error,
-                       100 * last.error / std::abs(last.limit));
+                       share < 100 ? fmt::format(" ({:.2g} %)", share) : "");
   }
 
 

@@ -45,7 +45,7 @@ namespace axiforge::study
           meshing::read_workpiece(parameters.workpiece, "Workpiece", parameters.directory);
       meshing::share_from_first_rank(mesh, communicator);
       const scene::Scene scene(parameters, meshing::outline_of(mesh));
-      return { output::history_columns(scene), scene.driving_tool != scene::no_tool,
+      return { output::history_columns(scene), scene.driving_tool != no_tool,
                scene.characteristic_rate };
     }
 

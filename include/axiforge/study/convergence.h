@@ -22,8 +22,8 @@ namespace axiforge::study
    *
    *     p = log((f1 - f2) / (f2 - f3)) / log(ratio),    a = f3 + (f3 - f2) / (ratio^p - 1).
    *
-   * Values that go up and down, or whose differences grow, have no order; neither have values whose
-   * last difference is rounding (1e-14 of them).
+   * Values that go up and down, or whose differences do not fall (p < 0.1), have no order; neither
+   * have values whose last difference is rounding (1e-14 of them).
    */
   Richardson extrapolate(double coarse, double middle, double fine, double ratio);
 
