@@ -7,6 +7,7 @@
 #include <axiforge/base/blas.h>
 #include <axiforge/base/errors.h>
 #include <axiforge/process/run.h>
+#include <axiforge/study/study.h>
 
 namespace
 {
@@ -19,6 +20,19 @@ namespace
       std::cerr << "axiforge: " << message << std::endl;
     return status;
   }
+
+
+  void add_scene_options(CLI::App &app, axiforge::process::RunOptions &options)
+  {
+    app.add_option("FILE.prm", options.parameter_file, "The scene to run");
+    app.add_option("--set", options.overrides,
+                   "Set an entry over the file: --set \"Section/Entry = value\"")
+        ->type_name("\"SECTION/ENTRY = VALUE\"")
+        ->allow_extra_args(false)
+        ->take_all();
+    app.add_option("--output", options.output_directory, "Folder of the results");
+    app.add_flag("--quiet", options.quiet, "No progress lines");
+  }
 } // namespace
 
 
@@ -30,19 +44,16 @@ int main(int argc, char **argv)
   for (int i = 0; i < argc; ++i)
     options.command_line += (i ? " " : "") + std::string(argv[i]);
 
-  CLI::App app("axiforge: axisymmetric forging by the viscoplastic flow formulation");
-  app.add_option("FILE.prm", options.parameter_file, "The scene to run")->required();
-  app.add_option("--set", options.overrides,
-                 "Set an entry over the file: --set \"Section/Entry = value\"")
-      ->type_name("\"SECTION/ENTRY = VALUE\"")
-      ->allow_extra_args(false)
-      ->take_all();
-  app.add_option("--output", options.output_directory, "Folder of the results");
+  CLI::App  app("axiforge: axisymmetric forging by the viscoplastic flow formulation");
+  CLI::App *study = app.add_subcommand(
+      "study", "Repeat a scene for the values of its section Study and compare the results");
+  // Not required() of the program itself: the scene of a study belongs to the word study.
+  add_scene_options(app, options);
+  add_scene_options(*study, options);
   app.add_flag("--validate", options.validate,
                "Read and check everything, meshes included; run nothing");
   app.add_flag("--print-parameters", options.print_parameters,
                "Print all entries with their values and texts");
-  app.add_flag("--quiet", options.quiet, "No progress lines");
   app.set_version_flag("--version",
                        "axiforge " + options.version + " (revision " + options.revision + ")");
   app.footer(
@@ -50,23 +61,28 @@ int main(int argc, char **argv)
   try
     {
       app.parse(argc, argv);
+      if (options.parameter_file.empty())
+        throw CLI::RequiredError("FILE.prm");
     }
   catch (const CLI::ParseError &error)
     {
       if (error.get_exit_code() == 0) // --help or --version
         return app.exit(error);
-      if (!options.validate && !options.print_parameters)
-        axiforge::restart_with_suitable_blas(argv);
       dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
       return report(std::string(error.what()) + ". axiforge --help tells what there is.",
                     bad_input);
     }
 
+  if (!options.validate && !options.print_parameters)
+    axiforge::restart_with_suitable_blas(argv);
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   axiforge::use_one_thread();
   try
     {
-      axiforge::process::run(options, MPI_COMM_WORLD);
+      if (study->parsed())
+        axiforge::study::run_study(options, MPI_COMM_WORLD);
+      else
+        axiforge::process::run(options, MPI_COMM_WORLD);
       return 0;
     }
   catch (const axiforge::InputError &error)

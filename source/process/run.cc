@@ -197,6 +197,8 @@ namespace axiforge::process
             results.write(state, record);
             progress.step(record);
             sum.add(record.times);
+            if (options.on_step)
+              options.on_step(scene, record);
             progress.mesh(adapt_if_due(scene, state, solver));
           }
       }

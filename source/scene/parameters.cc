@@ -267,6 +267,9 @@ namespace axiforge::scene
     prm.enter_subsection("Output");
     output.declare(prm);
     prm.leave_subsection();
+    prm.enter_subsection("Study");
+    study.declare(prm);
+    prm.leave_subsection();
   }
 
 

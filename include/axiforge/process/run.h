@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
 #include <deal.II/base/mpi.h>
+
+#include <axiforge/scene/scene.h>
+#include <axiforge/state/step_record.h>
 
 namespace axiforge::process
 {
@@ -18,6 +22,9 @@ namespace axiforge::process
     bool                     print_parameters = false;
     bool                     quiet            = false; ///< no progress lines
     std::string              version, revision, command_line;
+
+    /// Called on all ranks after every accepted step, for who repeats runs and compares them.
+    std::function<void(const scene::Scene &, const StepRecord &)> on_step;
   };
 
   /**

@@ -15,6 +15,7 @@
 #include <axiforge/base/parameter_file.h>
 #include <axiforge/laws/friction.h>
 #include <axiforge/laws/material.h>
+#include <axiforge/scene/study_parameters.h>
 #include <axiforge/tools/motion.h>
 #include <axiforge/tools/profile.h>
 #include <axiforge/tools/profile_reader.h>
@@ -148,6 +149,7 @@ namespace axiforge::scene
     FlowParameters                  flow;
     RefinementParameters            refinement;
     OutputParameters                output;
+    StudyParameters                 study;     ///< for `axiforge study` alone
     std::string                     directory; ///< of the .prm: relative names are resolved there
 
     /// All entries with their values in effect and their texts, in .prm form.
