@@ -38,6 +38,11 @@ int main(int argc, char **argv)
       ->allow_extra_args(false)
       ->take_all();
   app.add_option("--output", options.output_directory, "Folder of the results");
+  CLI::Option *resume =
+      app.add_option("--resume", options.resume_from,
+                     "Continue from the checkpoint in the folder of the results, or from this one")
+          ->type_name("[FOLDER|FILE]")
+          ->expected(0, 1);
   app.add_flag("--validate", options.validate,
                "Read and check everything, meshes included; run nothing");
   app.add_flag("--print-parameters", options.print_parameters,
@@ -62,6 +67,7 @@ int main(int argc, char **argv)
                     bad_input);
     }
 
+  options.resume = resume->count() > 0;
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   axiforge::use_one_thread();
   try

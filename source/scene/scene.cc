@@ -155,6 +155,7 @@ namespace axiforge::scene
       , time(parameters.time)
       , flow(parameters.flow)
       , output(parameters.output)
+      , checkpoint(parameters.checkpoint)
       , driving_tool(no_tool)
       , characteristic_speed(0)
       , size(std::max(outline.upper[0] - outline.lower[0], outline.upper[1] - outline.lower[1]))

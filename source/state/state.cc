@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <deal.II/base/quadrature_lib.h>
+#include <deal.II/dofs/dof_renumbering.h>
 #include <deal.II/dofs/dof_tools.h>
 
 #include <axiforge/base/errors.h>
@@ -24,6 +25,8 @@ namespace axiforge
   {
     flow_dofs.distribute_dofs(flow_element);
     history_dofs.distribute_dofs(history_element);
+    DoFRenumbering::hierarchical(flow_dofs);
+    DoFRenumbering::hierarchical(history_dofs);
 
     const IndexSet relevant = DoFTools::extract_locally_relevant_dofs(flow_dofs);
     position.reinit(flow_dofs.locally_owned_dofs(), relevant, communicator);
@@ -63,10 +66,14 @@ namespace axiforge
 
     const unsigned int side_nodes[4][3] = { { 0, 2, 4 }, { 1, 3, 5 }, { 0, 1, 6 }, { 2, 3, 7 } };
 
+    // By their ids: the order of deal.II's iterators depends on how the mesh was refined.
+    std::map<CellId, DoFHandler<2>::active_cell_iterator> cells;
     for (const auto &cell : flow_dofs.active_cell_iterators())
+      if (!cell->is_artificial())
+        cells.emplace(cell->id(), cell);
+
+    for (const auto &[id, cell] : cells)
       {
-        if (cell->is_artificial())
-          continue;
         cell->get_dof_indices(dofs);
         std::array<unsigned int, 9> nodes;
         for (unsigned int a = 0; a < 9; ++a)
@@ -104,6 +111,7 @@ namespace axiforge
         if (cell->is_locally_owned())
           {
             tables.cells.push_back(nodes);
+            tables.cell_ids.push_back(id);
             const DoFHandler<2>::active_cell_iterator history_cell(&triangulation, cell->level(),
                                                                    cell->index(), &history_dofs);
             history_cell->get_dof_indices(history);

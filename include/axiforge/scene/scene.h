@@ -93,6 +93,20 @@ namespace axiforge::scene
     void declare(dealii::ParameterHandler &prm);
   };
 
+  /// `subsection Checkpoint`
+  struct CheckpointParameters
+  {
+    unsigned int every_steps   = 0; ///< 0: not by steps
+    double       every_minutes = 0; ///< 0: not by the clock
+
+    bool regular() const
+    {
+      return every_steps > 0 || every_minutes > 0;
+    }
+
+    void declare(dealii::ParameterHandler &prm);
+  };
+
   /// `subsection Tool NAME`
   struct ToolParameters
   {
@@ -131,6 +145,7 @@ namespace axiforge::scene
     TimeParameters                  time;
     FlowParameters                  flow;
     OutputParameters                output;
+    CheckpointParameters            checkpoint;
     std::string                     directory; ///< of the .prm: relative names are resolved there
 
     /// All entries with their values in effect and their texts, in .prm form.
@@ -191,6 +206,7 @@ namespace axiforge::scene
     TimeParameters                 time;
     FlowParameters                 flow;
     OutputParameters               output;
+    CheckpointParameters           checkpoint;
 
     unsigned int
            driving_tool; ///< index of the tool whose travel is the stroke; no_tool without tools
