@@ -30,17 +30,28 @@ namespace axiforge::process
     }
 
 
+    constexpr int    signals[3] = { SIGUSR1, SIGTERM, SIGINT };
+    struct sigaction before[3];
+
     void set_handlers()
     {
       write_wanted = stop_wanted = 0;
-      struct sigaction action    = {};
-      action.sa_flags            = SA_RESTART;
-      action.sa_handler          = on_request;
-      sigaction(SIGUSR1, &action, nullptr);
-      action.sa_flags   = SA_RESTART | SA_RESETHAND;
-      action.sa_handler = on_stop;
-      for (const int signal : { SIGTERM, SIGINT })
-        sigaction(signal, &action, nullptr);
+      for (unsigned int i = 0; i < 3; ++i)
+        {
+          struct sigaction action = {};
+          action.sa_handler       = i == 0 ? on_request : on_stop;
+          action.sa_flags         = i == 0 ? SA_RESTART : SA_RESTART | SA_RESETHAND;
+          sigaction(signals[i], &action, &before[i]);
+          if (before[i].sa_handler == SIG_IGN) // as a script's background jobs do with Ctrl-C
+            sigaction(signals[i], &before[i], nullptr);
+        }
+    }
+
+
+    void reset_handlers()
+    {
+      for (unsigned int i = 0; i < 3; ++i)
+        sigaction(signals[i], &before[i], nullptr);
     }
 
 
@@ -95,8 +106,7 @@ namespace axiforge::process
 
   Checkpointing::~Checkpointing()
   {
-    for (const int signal : { SIGUSR1, SIGTERM, SIGINT })
-      std::signal(signal, SIG_DFL);
+    reset_handlers();
   }
 
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <deal.II/base/quadrature_lib.h>
-#include <deal.II/dofs/dof_renumbering.h>
 #include <deal.II/dofs/dof_tools.h>
 
 #include <axiforge/base/errors.h>
@@ -9,6 +8,43 @@
 namespace axiforge
 {
   using namespace dealii;
+
+  namespace
+  {
+    using CellsById = std::map<CellId, DoFHandler<2>::active_cell_iterator>;
+
+    /// Owned and ghost cells. The order of deal.II's own iterators depends on how the mesh was
+    /// refined, that of the ids on the mesh alone.
+    CellsById cells_by_id(const DoFHandler<2> &dof_handler)
+    {
+      CellsById cells;
+      for (const auto &cell : dof_handler.active_cell_iterators())
+        if (!cell->is_artificial())
+          cells.emplace(cell->id(), cell);
+      return cells;
+    }
+
+
+    /// Numbers the unknowns of this rank as its cells come, in the order of their ids.
+    void number_by_cell_ids(DoFHandler<2> &dof_handler)
+    {
+      const IndexSet                       owned = dof_handler.locally_owned_dofs();
+      std::vector<types::global_dof_index> dofs(dof_handler.get_fe().n_dofs_per_cell());
+      std::vector<types::global_dof_index> number(owned.n_elements(), numbers::invalid_dof_index);
+      types::global_dof_index              next = 0;
+      for (const auto &[id, cell] : cells_by_id(dof_handler))
+        if (cell->is_locally_owned())
+          {
+            cell->get_dof_indices(dofs);
+            for (const auto dof : dofs)
+              if (owned.is_element(dof))
+                if (auto &n = number[owned.index_within_set(dof)]; n == numbers::invalid_dof_index)
+                  n = owned.nth_index_in_set(next++);
+          }
+      dof_handler.renumber_dofs(number);
+    }
+  } // namespace
+
 
   State::State(const MPI_Comm comm)
       : communicator(comm)
@@ -25,8 +61,8 @@ namespace axiforge
   {
     flow_dofs.distribute_dofs(flow_element);
     history_dofs.distribute_dofs(history_element);
-    DoFRenumbering::hierarchical(flow_dofs);
-    DoFRenumbering::hierarchical(history_dofs);
+    number_by_cell_ids(flow_dofs);
+    number_by_cell_ids(history_dofs);
 
     const IndexSet relevant = DoFTools::extract_locally_relevant_dofs(flow_dofs);
     position.reinit(flow_dofs.locally_owned_dofs(), relevant, communicator);
@@ -66,13 +102,7 @@ namespace axiforge
 
     const unsigned int side_nodes[4][3] = { { 0, 2, 4 }, { 1, 3, 5 }, { 0, 1, 6 }, { 2, 3, 7 } };
 
-    // By their ids: the order of deal.II's iterators depends on how the mesh was refined.
-    std::map<CellId, DoFHandler<2>::active_cell_iterator> cells;
-    for (const auto &cell : flow_dofs.active_cell_iterators())
-      if (!cell->is_artificial())
-        cells.emplace(cell->id(), cell);
-
-    for (const auto &[id, cell] : cells)
+    for (const auto &[id, cell] : cells_by_id(flow_dofs))
       {
         cell->get_dof_indices(dofs);
         std::array<unsigned int, 9> nodes;

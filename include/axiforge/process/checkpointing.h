@@ -14,7 +14,8 @@ namespace axiforge::process
   /**
    * When a run writes its checkpoint: as the scene says, when it cannot go on, on SIGUSR1, and on
    * SIGTERM and SIGINT, which end it after the present step. The signals are caught as long as the
-   * object is there; a second SIGTERM or SIGINT ends the program at once.
+   * object is there; a second SIGTERM or SIGINT ends the program at once. A
+   * signal that is ignored at the start stays ignored.
    *
    * The file is `checkpoint.axi` in the folder of the results; the one before it stays as
    * `checkpoint.old.axi`.

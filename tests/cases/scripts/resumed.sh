@@ -15,6 +15,7 @@ begin "$@"
 scene=(cylinder_upsetting.prm --set "Time stepping/Stroke per step = 0.1" --set "Process/End stroke = 6"
   --set "Output/Fields every steps = 7"
   --set "Workpiece/Geometry parameters = Radius = 25, Height = 25, RadialCells = 8, AxialCells = 8")
+figures=time_s,force_upper_N,contact_radius_upper_mm,volume_mm3,largest_strain,power_friction_mW
 shear=(--set "Tool upper/Friction/Law = shear")
 
 # resume FOLDER STATUS ARGUMENT...: goes on in the folder's results.
@@ -83,18 +84,21 @@ resume term 0 "${scene[@]}"
 same smm term
 
 name=terminated_with_shear
-stop term_shear INT 6 "${scene[@]}" "${shear[@]}"
+stop term_shear TERM 6 "${scene[@]}" "${shear[@]}"
 [ "$got" -eq 2 ] || fail "exit status $got instead of 2"
 resume term_shear 0 "${scene[@]}" "${shear[@]}"
 same shear term_shear
 
 # Whatever the moment, there is a whole checkpoint; steps after it are made again.
 name=killed
-for rows in 2 9; do
+for rows in 2 9 23; do
   stop "killed_$rows" KILL "$rows" "${scene[@]}" --set "Checkpoint/Every steps = 1"
   resume "killed_$rows" 0 "${scene[@]}" --set "Checkpoint/Every steps = 1"
   same smm "killed_$rows"
 done
+stop killed_minutes KILL 5 "${scene[@]}" --set "Checkpoint/Every minutes = 1e-7"
+resume killed_minutes 0 "${scene[@]}"
+same smm killed_minutes
 
 name=every_steps
 stop steps KILL 9 "${scene[@]}" --set "Checkpoint/Every steps = 4"
@@ -105,7 +109,11 @@ same smm steps
 # From the one before it, which is further back.
 mv older/output/checkpoint.old.axi older/output/back.axi
 run older 0 "${scene[@]}" --resume "$PWD/older/output/back.axi"
-grep -qF 'resumed after step 4' older/stdout || fail "not from the older one: $(head -n 3 older/stdout)"
+newer=$(sed -n 's/^resumed after step \([0-9]*\),.*/\1/p' steps/stdout)
+back=$(sed -n 's/^resumed after step \([0-9]*\),.*/\1/p' older/stdout)
+# The same if it was killed when the last one was about to take its place.
+[ "$back" -eq $((newer - 4)) ] || [ "$back" -eq "$newer" ] ||
+  fail "the older checkpoint is of step $back, the newer one of step $newer"
 same smm older
 
 name=asked
@@ -122,6 +130,12 @@ grep -qF 'The state after step 10 is kept' out/stderr || fail "$(cat out/stderr)
 resume out 0 "${scene[@]}"
 same smm out
 
+# A finished run goes further; its steps differ by rounding errors, because they share out what is left.
+name=further
+run further 0 "${scene[@]}" --set "Process/End stroke = 2" --set "Checkpoint/Every steps = 1000"
+resume further 0 "${scene[@]}"
+compare smm/output/history.csv further/output/history.csv -v rel=1e-7 -v only="$figures"
+
 name=two_ranks
 ranks=2 run two 0 "${scene[@]}"
 ranks=2 run two_short 0 "${scene[@]}" --set "Time stepping/Most steps = 20" \
@@ -129,9 +143,26 @@ ranks=2 run two_short 0 "${scene[@]}" --set "Time stepping/Most steps = 20" \
 cp -r two_short two_on_one
 ranks=2 resume two_short 0 "${scene[@]}"
 same two two_short
-figures=time_s,force_upper_N,contact_radius_upper_mm,volume_mm3,largest_strain,power_friction_mW
 resume two_on_one 0 "${scene[@]}"
 compare two/output/history.csv two_on_one/output/history.csv -v rel=1e-8 -v only="$figures"
+
+# A signal that reaches one rank stops both.
+name=signal_to_one_rank
+mkdir -p one_rank
+cd scene
+OPENBLAS_NUM_THREADS=1 "${AXIFORGE_MPIRUN:-mpirun}" --oversubscribe -np 2 "$program" "${scene[@]}" --quiet \
+  --output "$PWD/../one_rank/output" </dev/null >../one_rank/stdout 2>../one_rank/stderr &
+pid=$!
+cd ..
+for _ in $(seq 600); do
+  [ "$(cat one_rank/output/history.csv 2>/dev/null | wc -l)" -le 5 ] || break
+  sleep 0.05
+done
+kill -TERM "$(pgrep -P "$pid" | tail -n 1)" || fail "there are no ranks"
+wait "$pid" && fail "the run has gone on"
+[ "$(grep -cF 'asked to stop by a signal' one_rank/stderr)" -eq 1 ] || fail "$(cat one_rank/stderr)"
+ranks=2 resume one_rank 0 "${scene[@]}"
+same two one_rank
 
 # Messages of one line, status 1, and nothing in the folder is touched.
 refused() { # TEXT ARGUMENT...
