@@ -11,28 +11,35 @@ namespace axiforge
 
   namespace
   {
-    using CellsById = std::map<CellId, DoFHandler<2>::active_cell_iterator>;
-
-    /// Owned and ghost cells. The order of deal.II's own iterators depends on how the mesh was
-    /// refined, that of the ids on the mesh alone.
-    CellsById cells_by_id(const DoFHandler<2> &dof_handler)
+    /// Owned and ghost cells, coarse cell by coarse cell as in the triangulation, then by their
+    /// ids. The order of deal.II's own iterators depends on how the mesh was refined, this one on
+    /// the mesh alone.
+    std::vector<DoFHandler<2>::active_cell_iterator> ordered_cells(const DoFHandler<2> &dof_handler)
     {
-      CellsById cells;
+      std::map<std::pair<unsigned int, CellId>, DoFHandler<2>::active_cell_iterator> cells;
       for (const auto &cell : dof_handler.active_cell_iterators())
         if (!cell->is_artificial())
-          cells.emplace(cell->id(), cell);
-      return cells;
+          {
+            DoFHandler<2>::cell_iterator root = cell;
+            while (root->level() > 0)
+              root = root->parent();
+            cells.emplace(std::make_pair(root->index(), cell->id()), cell);
+          }
+      std::vector<DoFHandler<2>::active_cell_iterator> list;
+      for (const auto &entry : cells)
+        list.push_back(entry.second);
+      return list;
     }
 
 
-    /// Numbers the unknowns of this rank as its cells come, in the order of their ids.
-    void number_by_cell_ids(DoFHandler<2> &dof_handler)
+    /// Numbers the unknowns of this rank as its cells come.
+    void number_by_cells(DoFHandler<2> &dof_handler)
     {
       const IndexSet                       owned = dof_handler.locally_owned_dofs();
       std::vector<types::global_dof_index> dofs(dof_handler.get_fe().n_dofs_per_cell());
       std::vector<types::global_dof_index> number(owned.n_elements(), numbers::invalid_dof_index);
       types::global_dof_index              next = 0;
-      for (const auto &[id, cell] : cells_by_id(dof_handler))
+      for (const auto &cell : ordered_cells(dof_handler))
         if (cell->is_locally_owned())
           {
             cell->get_dof_indices(dofs);
@@ -61,8 +68,8 @@ namespace axiforge
   {
     flow_dofs.distribute_dofs(flow_element);
     history_dofs.distribute_dofs(history_element);
-    number_by_cell_ids(flow_dofs);
-    number_by_cell_ids(history_dofs);
+    number_by_cells(flow_dofs);
+    number_by_cells(history_dofs);
 
     const IndexSet relevant = DoFTools::extract_locally_relevant_dofs(flow_dofs);
     position.reinit(flow_dofs.locally_owned_dofs(), relevant, communicator);
@@ -102,7 +109,7 @@ namespace axiforge
 
     const unsigned int side_nodes[4][3] = { { 0, 2, 4 }, { 1, 3, 5 }, { 0, 1, 6 }, { 2, 3, 7 } };
 
-    for (const auto &[id, cell] : cells_by_id(flow_dofs))
+    for (const auto &cell : ordered_cells(flow_dofs))
       {
         cell->get_dof_indices(dofs);
         std::array<unsigned int, 9> nodes;
@@ -141,7 +148,7 @@ namespace axiforge
         if (cell->is_locally_owned())
           {
             tables.cells.push_back(nodes);
-            tables.cell_ids.push_back(id);
+            tables.cell_ids.push_back(cell->id());
             const DoFHandler<2>::active_cell_iterator history_cell(&triangulation, cell->level(),
                                                                    cell->index(), &history_dofs);
             history_cell->get_dof_indices(history);

@@ -59,7 +59,7 @@ namespace axiforge
   struct MeshTables
   {
     std::vector<std::array<unsigned int, 9>>     cells;    ///< nodes of the locally owned cells
-    std::vector<dealii::CellId>                  cell_ids; ///< of the same; they ascend
+    std::vector<dealii::CellId>                  cell_ids; ///< of the same
     std::vector<dealii::types::global_dof_index> first_strain_dof; ///< local index, per cell
     std::vector<BoundaryEdge>                    edges;
     std::vector<BoundaryNode>                    boundary_nodes;
