@@ -126,7 +126,8 @@ TEST_P(Continued, IsTheSameToTheLastBit)
   EXPECT_EQ(read_back.record.tools.size(), 1u);
   EXPECT_EQ(loaded.boundary_ids, problem.state.boundary_ids);
   expect_equal(problem.state, loaded);
-  EXPECT_NE(order_of_cells(problem.state), order_of_cells(loaded)) << "too easy for this test";
+  const int reordered = order_of_cells(problem.state) != order_of_cells(loaded);
+  EXPECT_EQ(dealii::Utilities::MPI::max(reordered, MPI_COMM_WORLD), 1) << "too easy for this test";
 
   const StepRecord uninterrupted = run_steps(problem.scene, problem.state, third, 4);
   const StepRecord resumed       = run_steps(problem.scene, loaded, read_back.record, 4);
