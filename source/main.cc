@@ -50,6 +50,11 @@ int main(int argc, char **argv)
   // Not required() of the program itself: the scene of a study belongs to the word study.
   add_scene_options(app, options);
   add_scene_options(*study, options);
+  CLI::Option *resume =
+      app.add_option("--resume", options.resume_from,
+                     "Continue from the checkpoint in the folder of the results, or from this one")
+          ->type_name("[FOLDER|FILE]")
+          ->expected(0, 1);
   app.add_flag("--validate", options.validate,
                "Read and check everything, meshes included; run nothing");
   app.add_flag("--print-parameters", options.print_parameters,
@@ -73,6 +78,7 @@ int main(int argc, char **argv)
                     bad_input);
     }
 
+  options.resume = resume->count() > 0;
   if (!options.validate && !options.print_parameters)
     axiforge::restart_with_suitable_blas(argv);
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);

@@ -85,10 +85,9 @@ namespace axiforge::meshing
     std::vector<unsigned int> rows_of_cells(const State &state)
     {
       std::vector<unsigned int> rows(state.triangulation.n_active_cells(), no_tool);
-      unsigned int              row = 0;
-      for (const auto &cell : state.triangulation.active_cell_iterators())
-        if (cell->is_locally_owned())
-          rows[cell->active_cell_index()] = row++;
+      for (unsigned int row = 0; row < state.tables.cell_ids.size(); ++row)
+        rows[state.triangulation.create_cell_iterator(state.tables.cell_ids[row])
+                 ->active_cell_index()] = row;
       return rows;
     }
 
@@ -220,14 +219,15 @@ namespace axiforge::meshing
     };
     const Field normal = stress_of(0), other = stress_of(2);
 
-    const FE_Q<2>         nodes(2);
-    dealii::Vector<float> indicators(state.triangulation.n_active_cells());
-    double                error = 0, norm = 0;
-    unsigned int          row = 0;
+    const FE_Q<2>                   nodes(2);
+    dealii::Vector<float>           indicators(state.triangulation.n_active_cells());
+    double                          error = 0, norm = 0;
+    const std::vector<unsigned int> rows = rows_of_cells(state);
     for (const auto &cell : state.triangulation.active_cell_iterators())
       {
         if (!cell->is_locally_owned())
           continue;
+        const unsigned int row                = rows[cell->active_cell_index()];
         const CellHistory &history            = state.cell_history[row];
         const auto        &numbers            = state.tables.cells[row];
         double             cell_norm          = 0;
@@ -256,7 +256,6 @@ namespace axiforge::meshing
         indicators[cell->active_cell_index()] = cell_error;
         error += cell_error;
         norm += cell_norm;
-        ++row;
       }
     error    = MPI::sum(error, state.communicator);
     norm     = MPI::sum(norm, state.communicator);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <filesystem>
+#include <fstream>
+#include <set>
 #include <sstream>
 
 #include <deal.II/base/data_out_base.h>
@@ -11,13 +13,16 @@
 
 namespace axiforge::output
 {
-  Results::Results(const scene::Scene &scene,
-                   const State        &state,
-                   const std::string  &directory,
-                   const Provenance   &provenance)
+  Results::Results(const scene::Scene    &scene,
+                   const State           &state,
+                   const std::string     &directory,
+                   const Provenance      &provenance,
+                   const ResultsProgress *resumed)
       : scene(scene)
       , folder(directory)
   {
+    if (resumed)
+      done = *resumed;
     on_first_rank(state.communicator, [&] {
       std::error_code error;
       std::filesystem::create_directories(folder + "/fields", error);
@@ -25,19 +30,55 @@ namespace axiforge::output
         throw InputError::entry("Output/Directory", folder,
                                 "the folder can't be made (" + error.message() + ")",
                                 "a folder that you may write to", "Choose another with --output");
-      // What an earlier run has left here would mix with ours.
-      for (const auto &entry : std::filesystem::directory_iterator(folder + "/fields"))
-        if (entry.path().extension() == ".vtu" || entry.path().extension() == ".part")
-          std::filesystem::remove(entry.path(), error);
-      for (const char *name : { "fields.pvd", "tools.pvd", "history.csv" })
-        std::filesystem::remove(folder + "/" + name, error);
-      write_file_atomically(folder + "/input.prm", provenance.input);
-      write_file_atomically(folder + "/parameters.prm", provenance.parameters);
-      write_file_atomically(folder + "/versions.txt", provenance.versions);
-      history.emplace(CsvFile::create(folder + "/history.csv", history_columns(scene)));
+      if (resumed)
+        continue_folder(state, provenance);
+      else
+        start_folder(provenance);
     });
-    if (scene.output.format == "vtu")
+    if (!resumed && scene.output.format == "vtu")
       write_fields(state);
+  }
+
+
+  void Results::start_folder(const Provenance &provenance)
+  {
+    // What an earlier run has left here would mix with ours.
+    std::error_code ignored;
+    for (const auto &entry : std::filesystem::directory_iterator(folder + "/fields"))
+      if (entry.path().extension() == ".vtu" || entry.path().extension() == ".part")
+        std::filesystem::remove(entry.path(), ignored);
+    for (const char *name :
+         { "fields.pvd", "tools.pvd", "history.csv", "checkpoint.axi", "checkpoint.old.axi" })
+      std::filesystem::remove(folder + "/" + name, ignored);
+    write_file_atomically(folder + "/input.prm", provenance.input);
+    write_file_atomically(folder + "/parameters.prm", provenance.parameters);
+    write_file_atomically(folder + "/versions.txt", provenance.versions);
+    history.emplace(CsvFile::create(folder + "/history.csv", history_columns(scene)));
+  }
+
+
+  void Results::continue_folder(const State &state, const Provenance &provenance)
+  {
+    history.emplace(CsvFile::resume(folder + "/history.csv", history_columns(scene), done.n_rows));
+
+    std::set<std::string> kept;
+    for (const auto *list : { &done.field_files, &done.tool_files })
+      for (const auto &file : *list)
+        kept.insert(std::filesystem::path(file.second).filename().string());
+    if (!kept.empty())
+      write_collections();
+    std::error_code ignored;
+    for (const auto &entry : std::filesystem::directory_iterator(folder + "/fields"))
+      if (entry.path().extension() == ".vtu" && !kept.count(entry.path().filename().string()))
+        std::filesystem::remove(entry.path(), ignored);
+
+    std::ostringstream before;
+    before << std::ifstream(folder + "/versions.txt").rdbuf();
+    write_file_atomically(folder + "/input.prm", provenance.input);
+    write_file_atomically(folder + "/parameters.prm", provenance.parameters);
+    write_file_atomically(folder + "/versions.txt",
+                          before.str() + fmt::format("\nresumed after step {}:\n", state.step) +
+                              provenance.versions);
   }
 
 
@@ -47,17 +88,20 @@ namespace axiforge::output
     if (when.interval_steps > 0 && state.step % when.interval_steps == 0)
       return true;
     if (when.interval_stroke > 0)
-      return record.stroke >= last_fields_stroke + when.interval_stroke * (1 - 1e-9);
+      return record.stroke >= done.last_fields_stroke + when.interval_stroke * (1 - 1e-9);
     return when.interval_steps == 0 &&
-           record.time >= last_fields_time + scene.end_time() / 20 * (1 - 1e-9);
+           record.time >= done.last_fields_time + scene.end_time() / 20 * (1 - 1e-9);
   }
 
 
   void Results::write(const State &state, const StepRecord &record)
   {
-    wall_seconds += record.times.total;
-    on_first_rank(state.communicator,
-                  [&] { history->write_row(history_row(scene, record, wall_seconds)); });
+    done.wall_seconds += record.times.total;
+    on_first_rank(state.communicator, [&] {
+      history->write_row(history_row(scene, record, done.wall_seconds));
+      done.n_rows = history->n_rows();
+    });
+    done.last_step = state.step;
     if (scene.output.format == "vtu" && fields_due(state, record))
       write_fields(state);
   }
@@ -65,20 +109,20 @@ namespace axiforge::output
 
   void Results::write_fields(const State &state)
   {
-    if (scene.output.format != "vtu" || last_fields_step == state.step)
+    if (scene.output.format != "vtu" || done.last_fields_step == state.step)
       return;
-    last_fields_step         = state.step;
-    last_fields_stroke       = scene.stroke(state.time);
-    last_fields_time         = state.time;
+    done.last_fields_step    = state.step;
+    done.last_fields_stroke  = scene.stroke(state.time);
+    done.last_fields_time    = state.time;
     const std::string fields = fmt::format("fields/workpiece_{:05}.vtu", state.step);
     write_vtu(state, folder + "/" + fields);
-    field_files.emplace_back(state.time, fields);
+    done.field_files.emplace_back(state.time, fields);
     on_first_rank(state.communicator, [&] {
       if (!scene.tools.empty())
         {
           const std::string tools = fmt::format("fields/tools_{:05}.vtu", state.step);
           write_tools(scene, state.time, folder + "/" + tools);
-          tool_files.emplace_back(state.time, tools);
+          done.tool_files.emplace_back(state.time, tools);
         }
       write_collections();
     });
@@ -88,11 +132,11 @@ namespace axiforge::output
   void Results::write_collections() const
   {
     std::ostringstream fields, tools;
-    dealii::DataOutBase::write_pvd_record(fields, field_files);
+    dealii::DataOutBase::write_pvd_record(fields, done.field_files);
     write_file_atomically(folder + "/fields.pvd", fields.str());
-    if (!tool_files.empty())
+    if (!done.tool_files.empty())
       {
-        dealii::DataOutBase::write_pvd_record(tools, tool_files);
+        dealii::DataOutBase::write_pvd_record(tools, done.tool_files);
         write_file_atomically(folder + "/tools.pvd", tools.str());
       }
   }

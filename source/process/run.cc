@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <filesystem>
 #include <iostream>
+#include <optional>
 
 #include <deal.II/base/revision.h>
 #include <deal.II/base/timer.h>
@@ -8,6 +9,7 @@
 #include <axiforge/base/errors.h>
 #include <axiforge/meshing/initial_state.h>
 #include <axiforge/output/results.h>
+#include <axiforge/process/checkpointing.h>
 #include <axiforge/process/mesh_change.h>
 #include <axiforge/process/run.h>
 #include <axiforge/process/step.h>
@@ -35,10 +37,15 @@ namespace axiforge::process
       {
       }
 
-      void start(const State &state) const
+      void start(const State &state)
       {
+        start_time = state.time;
+        start_step = state.step;
         if (quiet)
           return;
+        if (state.step > 0)
+          std::cout << fmt::format("resumed after step {}, time {:.6g} s\n", state.step,
+                                   state.time);
         if (!scene.title.empty())
           std::cout << scene.title << '\n';
         std::cout << fmt::format(
@@ -59,7 +66,8 @@ namespace axiforge::process
           if (scene.boundaries[i].is_velocity)
             forces += fmt::format("  {} {:.6g} MPa", scene.boundaries[i].name,
                                   record.boundaries[i].pressure);
-        const double left = timer.wall_time() / record.time * (scene.end_time() - record.time);
+        const double left =
+            timer.wall_time() / (record.time - start_time) * (scene.end_time() - record.time);
         std::cout << fmt::format(
                          "step {:4}  t {:.5g} s  stroke {:.5g} mm{}  iterations {}  cells {}  left "
                          "{}{}\n",
@@ -92,13 +100,14 @@ namespace axiforge::process
         if (quiet)
           return;
         const double total = timer.wall_time();
-        std::cout << fmt::format(
-                         "{} steps in {} ({:.1f} ms per step): cells {:.0f} %, contact and "
-                         "friction {:.0f} %, "
-                         "factorisation {:.0f} %, solve {:.0f} %, analysis {:.3f} s\n",
-                         state.step, duration(total), 1e3 * total / std::max(1u, state.step),
-                         100 * (sum.assembly + sum.residual) / total, 100 * sum.contact / total,
-                         100 * sum.factor / total, 100 * sum.solve / total, analyse)
+        std::cout << fmt::format("{} steps in {} ({:.1f} ms per step): cells {:.0f} %, contact and "
+                                 "friction {:.0f} %, "
+                                 "factorisation {:.0f} %, solve {:.0f} %, analysis {:.3f} s\n",
+                                 state.step - start_step, duration(total),
+                                 1e3 * total / std::max(1u, state.step - start_step),
+                                 100 * (sum.assembly + sum.residual) / total,
+                                 100 * sum.contact / total, 100 * sum.factor / total,
+                                 100 * sum.solve / total, analyse)
                   << "Results: " << folder << '\n'
                   << std::flush;
       }
@@ -106,6 +115,8 @@ namespace axiforge::process
     private:
       const scene::Scene &scene;
       bool                quiet;
+      double              start_time = 0; ///< of this run, which may continue another [s]
+      unsigned int        start_step = 0;
       dealii::Timer       timer;
     };
 
@@ -116,6 +127,43 @@ namespace axiforge::process
           "axiforge {} (revision {})\ndeal.II {} ({})\n{} ranks\ncommand: {}\n", options.version,
           options.revision, DEAL_II_PACKAGE_VERSION, DEAL_II_GIT_SHORTREV,
           dealii::Utilities::MPI::n_mpi_processes(communicator), options.command_line);
+    }
+
+
+    std::string results_folder(const RunOptions &options, const scene::Scene &scene)
+    {
+      namespace fs = std::filesystem;
+      if (!options.output_directory.empty())
+        return options.output_directory;
+      if (!options.resume_from.empty() && fs::exists(options.resume_from))
+        {
+          const fs::path from = options.resume_from;
+          return fs::is_directory(from)   ? from.string()
+                 : from.has_parent_path() ? from.parent_path().string()
+                                          : ".";
+        }
+      if (!scene.output.directory.empty())
+        return scene.output.directory;
+      return "results/" + fs::path(options.parameter_file).stem().string();
+    }
+
+
+    /// Fills the state from the checkpoint and checks that this is the same workpiece.
+    CheckpointExtras resume(const std::string            &path,
+                            const std::string            &parameters,
+                            const meshing::WorkpieceMesh &mesh,
+                            State                        &state)
+    {
+      CheckpointExtras extras = load_checkpoint(state, path);
+      check_same_scene(extras.parameters, parameters, path);
+      const double volume = mesh.volume();
+      if (std::abs(volume / state.initial_volume - 1) > 1e-6)
+        throw InputError(fmt::format(
+            "The workpiece of the checkpoint \"{}\" had {:.10g} mm^3 at its start, that "
+            "of the geometry file has {:.10g}: the file has changed. Put it back, or "
+            "start without --resume.",
+            path, state.initial_volume, volume));
+      return extras;
     }
 
 
@@ -160,8 +208,14 @@ namespace axiforge::process
           "Flow solver/Linear solver", "cholmod", "CHOLMOD works on one rank only",
           "'automatic' or 'mumps' on several ranks", "Or start the program without mpirun");
 
-    State state(communicator);
-    meshing::make_initial_state(mesh, parameters.workpiece.refinement_levels, state);
+    const std::string               folder = results_folder(options, scene);
+    State                           state(communicator);
+    std::optional<CheckpointExtras> resumed;
+    if (options.resume)
+      resumed =
+          resume(find_checkpoint(options.resume_from, folder), parameters.print(), mesh, state);
+    else
+      meshing::make_initial_state(mesh, parameters.workpiece.refinement_levels, state);
     if (options.validate)
       {
         if (first)
@@ -172,24 +226,20 @@ namespace axiforge::process
       }
     warn(scene, quiet);
 
-    std::string folder =
-        options.output_directory.empty() ? scene.output.directory : options.output_directory;
-    if (folder.empty())
-      folder = "results/" + std::filesystem::path(file.path()).stem().string();
-
-    const std::string head =
-        "# Names of files in here count from the folder of " + file.path() + ".\n";
-    const Progress  progress(scene, quiet);
+    Progress        progress(scene, quiet);
     output::Results results(
         scene, state, folder,
-        { file.resolved_text(), parameters.print(), versions(options, communicator) });
-    auto       solver = std::make_unique<solvers::FlowSolver>(scene, state);
-    StepRecord record;
-    StepTimes  sum;
+        { file.resolved_text(), parameters.print(), versions(options, communicator) },
+        resumed ? &resumed->results : nullptr);
+    auto          solver = std::make_unique<solvers::FlowSolver>(scene, state);
+    StepRecord    record = resumed ? resumed->record : StepRecord();
+    StepTimes     sum;
+    Checkpointing checkpoints(scene, folder, parameters.print());
     progress.start(state);
     try
       {
-        adapt_at_start(scene, state, solver, choose_step_size(scene, state, record));
+        if (!resumed)
+          adapt_at_start(scene, state, solver, choose_step_size(scene, state, record));
         while (state.time < scene.end_time() * (1 - 1e-12) && state.step < scene.time.most_steps)
           {
             const double time_step = choose_step_size(scene, state, record);
@@ -200,12 +250,16 @@ namespace axiforge::process
             if (options.on_step)
               options.on_step(scene, record);
             progress.mesh(adapt_if_due(scene, state, solver));
+            if (checkpoints.after_step(state, record, results) && !quiet)
+              std::cout << "checkpoint after step " << state.step << std::endl;
           }
+        checkpoints.at_end(state, record, results);
       }
-    catch (const ComputationError &)
+    catch (const ComputationError &error)
       {
+        const std::string advice = checkpoints.rescue(state, record, results);
         results.write_fields(state); // what there is stays, up to the last good step
-        throw;
+        throw ComputationError(error.what() + advice);
       }
     results.write_fields(state);
     progress.end(state, sum, solver->linear_system().analyse_seconds, folder);

@@ -171,6 +171,20 @@ namespace axiforge::scene
   }
 
 
+  void CheckpointParameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter(
+        "Every steps", every_steps,
+        "All that a run needs to go on is written to checkpoint.axi, in the folder of "
+        "the results, after every so many steps, for --resume. 0: not by steps. Without "
+        "any entry here it is written when a run cannot go on and on a signal.",
+        Patterns::Integer(0));
+    prm.add_parameter("Every minutes", every_minutes,
+                      "The same whenever so much time has passed on the wall [min]. 0: not used.",
+                      Patterns::Double(0));
+  }
+
+
   void ToolParameters::declare(ParameterHandler &prm)
   {
     geometry.declare_profile(prm);
@@ -269,6 +283,9 @@ namespace axiforge::scene
     prm.leave_subsection();
     prm.enter_subsection("Study");
     study.declare(prm);
+    prm.leave_subsection();
+    prm.enter_subsection("Checkpoint");
+    checkpoint.declare(prm);
     prm.leave_subsection();
   }
 

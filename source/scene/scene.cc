@@ -156,6 +156,7 @@ namespace axiforge::scene
       , flow(parameters.flow)
       , refinement(parameters.refinement)
       , output(parameters.output)
+      , checkpoint(parameters.checkpoint)
       , driving_tool(no_tool)
       , characteristic_speed(0)
       , size(std::max(outline.upper[0] - outline.lower[0], outline.upper[1] - outline.lower[1]))

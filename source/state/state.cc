@@ -9,6 +9,50 @@ namespace axiforge
 {
   using namespace dealii;
 
+  namespace
+  {
+    /// Owned and ghost cells, coarse cell by coarse cell as in the triangulation, then by their
+    /// ids. The order of deal.II's own iterators depends on how the mesh was refined, this one on
+    /// the mesh alone.
+    std::vector<DoFHandler<2>::active_cell_iterator> ordered_cells(const DoFHandler<2> &dof_handler)
+    {
+      std::map<std::pair<unsigned int, CellId>, DoFHandler<2>::active_cell_iterator> cells;
+      for (const auto &cell : dof_handler.active_cell_iterators())
+        if (!cell->is_artificial())
+          {
+            DoFHandler<2>::cell_iterator root = cell;
+            while (root->level() > 0)
+              root = root->parent();
+            cells.emplace(std::make_pair(root->index(), cell->id()), cell);
+          }
+      std::vector<DoFHandler<2>::active_cell_iterator> list;
+      for (const auto &entry : cells)
+        list.push_back(entry.second);
+      return list;
+    }
+
+
+    /// Numbers the unknowns of this rank as its cells come.
+    void number_by_cells(DoFHandler<2> &dof_handler)
+    {
+      const IndexSet                       owned = dof_handler.locally_owned_dofs();
+      std::vector<types::global_dof_index> dofs(dof_handler.get_fe().n_dofs_per_cell());
+      std::vector<types::global_dof_index> number(owned.n_elements(), numbers::invalid_dof_index);
+      types::global_dof_index              next = 0;
+      for (const auto &cell : ordered_cells(dof_handler))
+        if (cell->is_locally_owned())
+          {
+            cell->get_dof_indices(dofs);
+            for (const auto dof : dofs)
+              if (owned.is_element(dof))
+                if (auto &n = number[owned.index_within_set(dof)]; n == numbers::invalid_dof_index)
+                  n = owned.nth_index_in_set(next++);
+          }
+      dof_handler.renumber_dofs(number);
+    }
+  } // namespace
+
+
   State::State(const MPI_Comm comm)
       : communicator(comm)
       , triangulation(comm)
@@ -24,6 +68,8 @@ namespace axiforge
   {
     flow_dofs.distribute_dofs(flow_element);
     history_dofs.distribute_dofs(history_element);
+    number_by_cells(flow_dofs);
+    number_by_cells(history_dofs);
 
     const IndexSet relevant = DoFTools::extract_locally_relevant_dofs(flow_dofs);
     position.reinit(flow_dofs.locally_owned_dofs(), relevant, communicator);
@@ -63,10 +109,8 @@ namespace axiforge
 
     const unsigned int side_nodes[4][3] = { { 0, 2, 4 }, { 1, 3, 5 }, { 0, 1, 6 }, { 2, 3, 7 } };
 
-    for (const auto &cell : flow_dofs.active_cell_iterators())
+    for (const auto &cell : ordered_cells(flow_dofs))
       {
-        if (cell->is_artificial())
-          continue;
         cell->get_dof_indices(dofs);
         std::array<unsigned int, 9> nodes;
         for (unsigned int a = 0; a < 9; ++a)
@@ -104,6 +148,7 @@ namespace axiforge
         if (cell->is_locally_owned())
           {
             tables.cells.push_back(nodes);
+            tables.cell_ids.push_back(cell->id());
             const DoFHandler<2>::active_cell_iterator history_cell(&triangulation, cell->level(),
                                                                    cell->index(), &history_dofs);
             history_cell->get_dof_indices(history);

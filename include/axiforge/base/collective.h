@@ -2,6 +2,8 @@
 #pragma once
 
 #include <functional>
+#include <string>
+#include <vector>
 
 #include <mpi.h>
 
@@ -13,4 +15,11 @@ namespace axiforge
    * none waits for ever. Collective.
    */
   void on_first_rank(MPI_Comm communicator, const std::function<void()> &action);
+
+  /// The texts of all ranks on the first one, in the order of the ranks; nothing on the others.
+  /// They may be long and hold any bytes. Collective.
+  std::vector<std::string> gather_on_first_rank(MPI_Comm communicator, const std::string &mine);
+
+  /// Replaces the text by that of the first rank. Collective.
+  void share_text_of_first_rank(MPI_Comm communicator, std::string &text);
 } // namespace axiforge

@@ -8,6 +8,7 @@
 
 #include <axiforge/base/atomic_file.h>
 #include <axiforge/scene/scene.h>
+#include <axiforge/state/checkpoint.h>
 #include <axiforge/state/state.h>
 #include <axiforge/state/step_record.h>
 
@@ -30,11 +31,16 @@ namespace axiforge::output
   class Results
   {
   public:
-    /// Makes the folder and writes what is known before the first step.
-    Results(const scene::Scene &scene,
-            const State        &state,
-            const std::string  &directory,
-            const Provenance   &provenance);
+    /**
+     * Makes the folder and writes what is known before the first step.
+     * @param resumed continue the folder from there: what was written later is taken away
+     * @throws InputError if the folder does not have what it had then
+     */
+    Results(const scene::Scene    &scene,
+            const State           &state,
+            const std::string     &directory,
+            const Provenance      &provenance,
+            const ResultsProgress *resumed = nullptr);
 
     /// Writes the row of the step, and the fields if they are due.
     void write(const State &state, const StepRecord &record);
@@ -47,17 +53,22 @@ namespace axiforge::output
       return folder;
     }
 
+    /// How far the folder has come.
+    const ResultsProgress &progress() const
+    {
+      return done;
+    }
+
   private:
+    void start_folder(const Provenance &provenance);
+    void continue_folder(const State &state, const Provenance &provenance);
     bool fields_due(const State &state, const StepRecord &record) const;
     void write_collections() const;
 
-    const scene::Scene                         &scene;
-    std::string                                 folder;
-    std::optional<CsvFile>                      history;                 ///< first rank only
-    std::vector<std::pair<double, std::string>> field_files, tool_files; ///< time, name
-    unsigned int                                last_fields_step   = static_cast<unsigned int>(-1);
-    double                                      last_fields_stroke = 0, last_fields_time = 0;
-    double                                      wall_seconds = 0;
+    const scene::Scene    &scene;
+    std::string            folder;
+    std::optional<CsvFile> history; ///< first rank only
+    ResultsProgress        done;    ///< rows and files of the tools: first rank only
   };
 
   /// Column names of history.csv.

@@ -16,8 +16,10 @@ namespace axiforge::process
   struct RunOptions
   {
     std::string              parameter_file;
-    std::vector<std::string> overrides;                ///< "Section/Entry = value"
-    std::string              output_directory;         ///< empty: as the scene says
+    std::vector<std::string> overrides;        ///< "Section/Entry = value"
+    std::string              output_directory; ///< empty: as the scene says
+    bool                     resume = false;   ///< continue from a checkpoint
+    std::string              resume_from;      ///< folder or file; empty: the folder of the results
     bool                     validate         = false; ///< read and check everything, run nothing
     bool                     print_parameters = false;
     bool                     quiet            = false; ///< no progress lines

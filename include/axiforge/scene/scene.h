@@ -110,6 +110,20 @@ namespace axiforge::scene
     void declare(dealii::ParameterHandler &prm);
   };
 
+  /// `subsection Checkpoint`
+  struct CheckpointParameters
+  {
+    unsigned int every_steps   = 0; ///< 0: not by steps
+    double       every_minutes = 0; ///< 0: not by the clock
+
+    bool regular() const
+    {
+      return every_steps > 0 || every_minutes > 0;
+    }
+
+    void declare(dealii::ParameterHandler &prm);
+  };
+
   /// `subsection Tool NAME`
   struct ToolParameters
   {
@@ -149,7 +163,8 @@ namespace axiforge::scene
     FlowParameters                  flow;
     RefinementParameters            refinement;
     OutputParameters                output;
-    StudyParameters                 study;     ///< for `axiforge study` alone
+    StudyParameters                 study; ///< for `axiforge study` alone
+    CheckpointParameters            checkpoint;
     std::string                     directory; ///< of the .prm: relative names are resolved there
 
     /// All entries with their values in effect and their texts, in .prm form.
@@ -211,6 +226,7 @@ namespace axiforge::scene
     FlowParameters                 flow;
     RefinementParameters           refinement;
     OutputParameters               output;
+    CheckpointParameters           checkpoint;
 
     unsigned int
            driving_tool; ///< index of the tool whose travel is the stroke; no_tool without tools

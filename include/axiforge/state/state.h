@@ -58,7 +58,8 @@ namespace axiforge
    */
   struct MeshTables
   {
-    std::vector<std::array<unsigned int, 9>>     cells; ///< nodes of the locally owned cells
+    std::vector<std::array<unsigned int, 9>>     cells;    ///< nodes of the locally owned cells
+    std::vector<dealii::CellId>                  cell_ids; ///< of the same
     std::vector<dealii::types::global_dof_index> first_strain_dof; ///< local index, per cell
     std::vector<BoundaryEdge>                    edges;
     std::vector<BoundaryNode>                    boundary_nodes;
@@ -108,7 +109,8 @@ namespace axiforge
 
   /**
    * The mutable world of a run: mesh, unknowns, fields, history, time. Written by accepting a step,
-   * by changing the mesh and by loading a checkpoint; nobody else.
+   * by changing the mesh and by loading a checkpoint; nobody else. A new member that the next steps
+   * depend on goes into the checkpoint, too (checkpoint.cc).
    */
   class State
   {
@@ -143,7 +145,9 @@ namespace axiforge
     double       initial_volume    = 0; ///< [mm^3]
     double       size              = 0; ///< largest extent of the workpiece at the start [mm]
 
-    /// Distributes the unknowns, sizes the fields and makes the tables. Fields come out zero.
+    /// Distributes the unknowns and sizes the fields, which come out zero. The numbering depends on
+    /// the mesh alone, not on the order in which it was refined, so that a checkpoint can be
+    /// continued bit for bit.
     void setup_dofs();
 
     /// Fills the tables that depend on the position field; call once it is known.

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <string>
+
+#include <deal.II/base/timer.h>
+
+#include <axiforge/output/results.h>
+#include <axiforge/scene/scene.h>
+#include <axiforge/state/checkpoint.h>
+
+namespace axiforge::process
+{
+  /**
+   * When a run writes its checkpoint: as the scene says, when it cannot go on, on SIGUSR1, and on
+   * SIGTERM and SIGINT, which end it after the present step. The signals are caught as long as the
+   * object is there; a second SIGTERM or SIGINT ends the program at once. A
+   * signal that is ignored at the start stays ignored.
+   *
+   * The file is `checkpoint.axi` in the folder of the results; the one before it stays as
+   * `checkpoint.old.axi`.
+   */
+  class Checkpointing
+  {
+  public:
+    /// @param parameters text of all entries in effect
+    Checkpointing(const scene::Scene &scene,
+                  const std::string  &folder,
+                  const std::string  &parameters);
+    Checkpointing(const Checkpointing &) = delete;
+    ~Checkpointing();
+
+    /**
+     * After an accepted step whose row is written: writes if it is due. Collective.
+     * @return whether it has written because of a signal
+     * @throws ComputationError if a signal asks the run to stop
+     */
+    bool after_step(const State &state, const StepRecord &record, const output::Results &results);
+
+    /// At the end of the run, if the scene asks for checkpoints. Collective.
+    void at_end(const State &state, const StepRecord &record, const output::Results &results);
+
+    /**
+     * When the run cannot go on: writes the last good state, to be called before other results are
+     * written. Throws nothing. Collective.
+     * @return a sentence for the message that says how to continue; empty if there was no step
+     */
+    std::string
+    rescue(const State &state, const StepRecord &record, const output::Results &results) noexcept;
+
+  private:
+    void write(const State &state, const StepRecord &record, const output::Results &results);
+
+    const scene::Scene &scene;
+    std::string         folder, parameters;
+    dealii::Timer       since_last;
+    unsigned int        last_step = static_cast<unsigned int>(-1); ///< of the last checkpoint
+  };
+
+  /**
+   * Where --resume finds its checkpoint.
+   * @param from as given: folder, file or empty
+   * @param folder of the results of this run
+   * @return path of the file
+   * @throws InputError if it is in another folder than that of the results
+   */
+  std::string find_checkpoint(const std::string &from, const std::string &folder);
+
+  /**
+   * Checks that a checkpoint belongs to a scene: all entries are the same but for the end of the
+   * run, time stepping, flow solver, outputs and checkpoints.
+   * @param before, now texts of all entries in effect
+   * @throws InputError that names the first entry that differs
+   */
+  void check_same_scene(const std::string &before, const std::string &now, const std::string &path);
+} // namespace axiforge::process

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <sstream>
+
+#include <deal.II/base/mpi.h>
+
+#include <axiforge/base/collective.h>
+#include <axiforge/base/csv.h>
+#include <axiforge/base/errors.h>
+#include <axiforge/process/checkpointing.h>
+
+namespace axiforge::process
+{
+  namespace
+  {
+    /// Set by the handlers, which may do nothing else; read after each step.
+    volatile std::sig_atomic_t write_wanted = 0, stop_wanted = 0;
+
+    extern "C" void on_request(int)
+    {
+      write_wanted = 1;
+    }
+
+    extern "C" void on_stop(const int signal)
+    {
+      stop_wanted = signal;
+    }
+
+
+    constexpr int    signals[3] = { SIGUSR1, SIGTERM, SIGINT };
+    struct sigaction before[3];
+
+    void set_handlers()
+    {
+      write_wanted = stop_wanted = 0;
+      for (unsigned int i = 0; i < 3; ++i)
+        {
+          struct sigaction action = {};
+          action.sa_handler       = i == 0 ? on_request : on_stop;
+          action.sa_flags         = i == 0 ? SA_RESTART : SA_RESTART | SA_RESETHAND;
+          sigaction(signals[i], &action, &before[i]);
+          if (before[i].sa_handler == SIG_IGN) // as a script's background jobs do with Ctrl-C
+            sigaction(signals[i], &before[i], nullptr);
+        }
+    }
+
+
+    void reset_handlers()
+    {
+      for (unsigned int i = 0; i < 3; ++i)
+        sigaction(signals[i], &before[i], nullptr);
+    }
+
+
+    /// Entries of a .prm as the program prints it, "Section/Entry".
+    std::map<std::string, std::string> entries_of(const std::string &text)
+    {
+      std::map<std::string, std::string> entries;
+      std::vector<std::string>           sections;
+      std::istringstream                 in(text);
+      for (std::string line; std::getline(in, line);)
+        {
+          const std::string statement(trim(line.substr(0, line.find('#'))));
+          if (statement == "end" && !sections.empty())
+            sections.pop_back();
+          else if (statement.compare(0, 11, "subsection ") == 0)
+            sections.push_back(statement.substr(11));
+          else if (const std::size_t equals = statement.find('=');
+                   statement.compare(0, 4, "set ") == 0 && equals != std::string::npos)
+            {
+              std::string path;
+              for (const std::string &section : sections)
+                path += section + "/";
+              entries[path + std::string(trim(statement.substr(4, equals - 4)))] =
+                  trim(statement.substr(equals + 1));
+            }
+        }
+      return entries;
+    }
+
+
+    /// Entries that say nothing about the body and what is done to it.
+    bool may_differ(const std::string &path)
+    {
+      for (const char *section : { "Output/", "Checkpoint/", "Time stepping/", "Flow solver/" })
+        if (path.compare(0, std::string(section).size(), section) == 0)
+          return true;
+      return path == "Title" || path == "Process/End stroke" || path == "Process/End time";
+    }
+  } // namespace
+
+
+  Checkpointing::Checkpointing(const scene::Scene &scene,
+                               const std::string  &folder,
+                               const std::string  &parameters)
+      : scene(scene)
+      , folder(folder)
+      , parameters(parameters)
+  {
+    set_handlers();
+  }
+
+
+  Checkpointing::~Checkpointing()
+  {
+    reset_handlers();
+  }
+
+
+  void
+  Checkpointing::write(const State &state, const StepRecord &record, const output::Results &results)
+  {
+    const std::string path = folder + "/checkpoint.axi";
+    on_first_rank(state.communicator, [&] {
+      // At any moment there is a whole file called checkpoint.axi: the old one gets a second name
+      // before the new one takes its place.
+      const std::string old = folder + "/checkpoint.old.axi", link = folder + "/.checkpoint.link";
+      std::error_code   error;
+      std::filesystem::remove(link, error);
+      if (!std::filesystem::exists(path, error))
+        return;
+      std::filesystem::create_hard_link(path, link, error);
+      if (error) // a file system without links
+        std::filesystem::copy_file(path, link, error);
+      if (!error)
+        std::filesystem::rename(link, old, error);
+    });
+    save_checkpoint(state, { parameters, record, results.progress() }, path);
+    last_step = state.step;
+    since_last.restart();
+  }
+
+
+  bool Checkpointing::after_step(const State           &state,
+                                 const StepRecord      &record,
+                                 const output::Results &results)
+  {
+    // The signal may have reached one rank only, and the clocks differ.
+    enum Wish
+    {
+      none,
+      regular,
+      request,
+      stop
+    };
+    const scene::CheckpointParameters &when = scene.checkpoint;
+    int                                wish = none;
+    if ((when.every_steps > 0 && state.step % when.every_steps == 0) ||
+        (when.every_minutes > 0 && since_last.wall_time() >= 60 * when.every_minutes))
+      wish = regular;
+    if (write_wanted)
+      wish = request;
+    if (stop_wanted)
+      wish = stop;
+    wish         = dealii::Utilities::MPI::max(wish, state.communicator);
+    write_wanted = 0;
+    if (wish == stop)
+      throw ComputationError(fmt::format(
+          "The run was asked to stop by a signal and has done so at time {:.6g} s, stroke {:.6g} "
+          "mm, after step {}.",
+          state.time, scene.stroke(state.time), state.step));
+    if (wish != none)
+      write(state, record, results);
+    return wish == request;
+  }
+
+
+  void Checkpointing::at_end(const State           &state,
+                             const StepRecord      &record,
+                             const output::Results &results)
+  {
+    if (scene.checkpoint.regular() && last_step != state.step)
+      write(state, record, results);
+  }
+
+
+  std::string Checkpointing::rescue(const State           &state,
+                                    const StepRecord      &record,
+                                    const output::Results &results) noexcept
+  {
+    const std::string path = folder + "/checkpoint.axi";
+    if (state.step == 0)
+      return {};
+    try
+      {
+        // If the step's row could not be written, its state would leave a gap: the checkpoint
+        // before it stays.
+        if (last_step != state.step && results.progress().last_step == state.step)
+          write(state, record, results);
+        if (last_step == static_cast<unsigned int>(-1))
+          return {};
+        return fmt::format(" The state after step {} is kept in \"{}\": --resume continues there.",
+                           last_step, path);
+      }
+    catch (const std::exception &error)
+      {
+        return std::string(" No checkpoint: ") + error.what();
+      }
+  }
+
+
+  std::string find_checkpoint(const std::string &from, const std::string &folder)
+  {
+    namespace fs = std::filesystem;
+    std::error_code ignored;
+    const fs::path  given  = from.empty() ? folder : from;
+    const bool      is_dir = from.empty() || fs::is_directory(given, ignored);
+    const fs::path  home   = is_dir                    ? given
+                             : given.has_parent_path() ? given.parent_path()
+                                                       : fs::path(".");
+    if (fs::exists(given, ignored) && fs::weakly_canonical(home) != fs::weakly_canonical(folder))
+      throw InputError(fmt::format("--resume \"{}\" continues in the folder of that checkpoint, "
+                                   "but --output says \"{}\". Leave --output out, or copy the "
+                                   "folder and name the copy in both.",
+                                   from, folder));
+    return is_dir ? (given / "checkpoint.axi").string() : given.string();
+  }
+
+
+  void check_same_scene(const std::string &before, const std::string &now, const std::string &path)
+  {
+    const auto old_entries = entries_of(before), new_entries = entries_of(now);
+    const auto differs = [&](const std::string &entry, const std::string &was,
+                             const std::string &is) {
+      return InputError::entry(
+          entry, is, fmt::format("the checkpoint \"{}\" was written with \"{}\"", path, was),
+          "the value of the checkpoint; only title, end of the run, time stepping, flow solver, "
+          "output and checkpoints may differ",
+          "Put it back, or start without --resume");
+    };
+    for (const auto &[entry, value] : old_entries)
+      if (!may_differ(entry))
+        {
+          const auto found = new_entries.find(entry);
+          if (found == new_entries.end())
+            throw differs(entry, value, "(not there)");
+          if (found->second != value)
+            throw differs(entry, value, found->second);
+        }
+    for (const auto &[entry, value] : new_entries)
+      if (!may_differ(entry) && !old_entries.count(entry))
+        throw differs(entry, "(not there)", value);
+  }
+} // namespace axiforge::process
