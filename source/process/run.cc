@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <filesystem>
 #include <iostream>
+#include <memory>
 
 #include <deal.II/base/revision.h>
 #include <deal.II/base/timer.h>
 
 #include <axiforge/base/errors.h>
 #include <axiforge/meshing/initial_state.h>
+#include <axiforge/meshing/remesh.h>
 #include <axiforge/output/results.h>
 #include <axiforge/process/run.h>
 #include <axiforge/process/step.h>
@@ -68,6 +70,16 @@ namespace axiforge::process
                   << std::flush;
       }
 
+      void remeshed(const State                 &state,
+                    const std::string           &reason,
+                    const meshing::RemeshResult &result) const
+      {
+        if (!quiet)
+          std::cout << fmt::format("remeshing after step {} ({}): {}\n", state.step, reason,
+                                   meshing::describe(result))
+                    << std::flush;
+      }
+
       void end(const State       &state,
                const StepTimes   &sum,
                const double       analyse,
@@ -118,6 +130,45 @@ namespace axiforge::process
                        "does not converge "
                        "there. \"Layer viscosity = layer\" does.\n";
     }
+
+
+    /// A new mesh and with it a new solver, if the mesh could be made.
+    bool remesh(const scene::Scene                   &scene,
+                State                                &state,
+                std::unique_ptr<solvers::FlowSolver> &solver,
+                const Progress                       &progress,
+                const std::string                    &reason)
+    {
+      const meshing::RemeshResult result = meshing::remesh(scene, state);
+      progress.remeshed(state, reason, result);
+      if (result.done)
+        solver = std::make_unique<solvers::FlowSolver>(scene, state);
+      return result.done;
+    }
+
+
+    /// A step; where it fails, and remeshing is allowed, once more with a new mesh.
+    StepRecord step(const scene::Scene                   &scene,
+                    State                                &state,
+                    std::unique_ptr<solvers::FlowSolver> &solver,
+                    const Progress                       &progress,
+                    const StepRecord                     &last)
+    {
+      constexpr unsigned int repeats_before_remeshing = 2;
+      if (const std::string reason = meshing::reason_to_remesh(scene, state); !reason.empty())
+        remesh(scene, state, solver, progress, reason);
+      const double time_step = choose_step_size(scene, state, last);
+      if (scene.remeshing.enabled && state.step > 0 && state.remeshing.last_attempt < state.step)
+        try
+          {
+            return advance(scene, state, *solver, time_step, last, repeats_before_remeshing);
+          }
+        catch (const ComputationError &)
+          {
+            remesh(scene, state, solver, progress, "a step failed");
+          }
+      return advance(scene, state, *solver, time_step, last);
+    }
   } // namespace
 
 
@@ -167,16 +218,18 @@ namespace axiforge::process
     output::Results results(
         scene, state, folder,
         { file.resolved_text(), parameters.print(), versions(options, communicator) });
-    solvers::FlowSolver solver(scene, state);
-    StepRecord          record;
-    StepTimes           sum;
+    auto       solver = std::make_unique<solvers::FlowSolver>(scene, state);
+    StepRecord record;
+    StepTimes  sum;
     progress.start(state);
     try
       {
         while (state.time < scene.end_time() * (1 - 1e-12) && state.step < scene.time.most_steps)
           {
-            const double time_step = choose_step_size(scene, state, record);
-            record                 = advance(scene, state, solver, time_step, record);
+            record                       = step(scene, state, solver, progress, record);
+            record.remeshings            = state.remeshing.count;
+            record.remeshing_volume_jump = state.remeshing.volume_jump;
+            record.remeshing_strain_jump = state.remeshing.strain_jump;
             results.write(state, record);
             progress.step(record);
             sum.add(record.times);
@@ -188,6 +241,6 @@ namespace axiforge::process
         throw;
       }
     results.write_fields(state);
-    progress.end(state, sum, solver.linear_system().analyse_seconds, folder);
+    progress.end(state, sum, solver->linear_system().analyse_seconds, folder);
   }
 } // namespace axiforge::process

@@ -109,7 +109,8 @@ namespace axiforge::process
                      State               &state,
                      solvers::FlowSolver &solver,
                      const double         wanted,
-                     const StepRecord    &last)
+                     const StepRecord    &last,
+                     const unsigned int   most_repeats)
   {
     // After steps that had to be shortened the length comes back by and by.
     double time_step =
@@ -157,7 +158,7 @@ namespace axiforge::process
           }
         ++repeats;
         time_step /= 2;
-        if (time_step < scene.time.smallest_step * wanted || repeats > 40)
+        if (time_step < scene.time.smallest_step * wanted || repeats > most_repeats)
           throw ComputationError(fmt::format("The run can't go on at time {:.6g} s, stroke {:.6g} "
                                              "mm, step {}: {}. The step was repeated "
                                              "{} times, down to {:.3g} s. If a cell turns over, "

@@ -154,6 +154,7 @@ namespace axiforge::scene
       , process(parameters.process)
       , time(parameters.time)
       , flow(parameters.flow)
+      , remeshing(parameters.remeshing)
       , output(parameters.output)
       , driving_tool(no_tool)
       , characteristic_speed(0)

@@ -82,6 +82,20 @@ namespace axiforge::scene
     void declare(dealii::ParameterHandler &prm);
   };
 
+  /// `subsection Remeshing`: a new mesh for the workpiece where the old one is used up.
+  struct RemeshingParameters
+  {
+    bool         enabled                  = false;
+    double       smallest_jacobian        = 0.25;
+    double       smallest_vertex_jacobian = 0.05;
+    double       largest_penetration      = 0.02;
+    unsigned int every_steps              = 0;
+    double       element_size             = 0; ///< [mm]; 0: as many cells as at the start
+    unsigned int most_cells               = 20000;
+
+    void declare(dealii::ParameterHandler &prm);
+  };
+
   /// `subsection Output`
   struct OutputParameters
   {
@@ -130,6 +144,7 @@ namespace axiforge::scene
     ProcessParameters               process;
     TimeParameters                  time;
     FlowParameters                  flow;
+    RemeshingParameters             remeshing;
     OutputParameters                output;
     std::string                     directory; ///< of the .prm: relative names are resolved there
 
@@ -190,6 +205,7 @@ namespace axiforge::scene
     ProcessParameters              process;
     TimeParameters                 time;
     FlowParameters                 flow;
+    RemeshingParameters            remeshing;
     OutputParameters               output;
 
     unsigned int
