@@ -256,10 +256,14 @@ namespace axiforge::meshing
     NewNode             node;
     node.position = piece.position(place.xi);
     node.carried  = without_contact();
+    if (piece.id == axis_id)
+      node.position[0] = 0;
     if (keep)
       {
         // The old node itself; of the two pieces that meet there, what the one knows that touches.
         const OutlinePiece &before = loop[(place.piece + loop.size() - 1) % loop.size()];
+        if (before.id == axis_id)
+          node.position[0] = 0;
         node.carried =
             piece.node[0].tool[0] >= 0 && !straight(piece.id) ? piece.node[0] : before.node[1];
         return node;

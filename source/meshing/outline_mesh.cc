@@ -220,7 +220,6 @@ namespace axiforge::meshing
 
 
   NewMesh mesh_outline(const std::vector<NewLoop>                              &loops,
-                       const double                                             edge_length,
                        const std::map<std::string, dealii::types::boundary_id> &boundary_ids)
   {
     NewMesh best;
@@ -249,7 +248,7 @@ namespace axiforge::meshing
                                                     { "Mesh.MeshSizeFromCurvature", 0 },
                                                     { "Mesh.MeshSizeExtendFromBoundary", 1 },
                                                     { "Mesh.MeshSizeMin", 0 },
-                                                    { "Mesh.MeshSizeMax", edge_length } })
+                                                    { "Mesh.MeshSizeMax", 1e22 } })
                   gmsh::option::setNumber(name, value);
                 const Model model = make_model(loops);
                 std::srand(1); // gmsh shifts points at random, and seeds only once per process
@@ -310,7 +309,7 @@ namespace axiforge::meshing
     for (unsigned int i = 0; i < 30; ++i)
       {
         const double error = move(distance);
-        if (!(std::abs(distance) < 0.1 * edge_length))
+        if (!(std::abs(distance) < 0.2 * edge_length))
           return false;
         if (std::abs(error) <= 1e-13 * volume || error == error_before)
           break;

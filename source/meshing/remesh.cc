@@ -44,7 +44,7 @@ namespace axiforge::meshing
                                ? scene.remeshing.element_size
                                : std::sqrt(area / state.remeshing.wanted_cells);
       size               = std::max(size, std::sqrt(area / scene.remeshing.most_cells));
-      made.mesh          = mesh_outline(outline.divide(size), size, state.boundary_ids);
+      made.mesh          = mesh_outline(outline.divide(size), state.boundary_ids);
       if (!made.mesh.fault.empty())
         return made;
       made.volume_jump = made.mesh.mesh.volume() - volume;

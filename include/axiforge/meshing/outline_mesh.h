@@ -25,13 +25,12 @@ namespace axiforge::meshing
    * inner ones straight. Not collective: for one rank, whose mesh is then sent to the others.
    */
   NewMesh mesh_outline(const std::vector<NewLoop>                              &loops,
-                       double                                                   edge_length,
                        const std::map<std::string, dealii::types::boundary_id> &boundary_ids);
 
   /**
    * Moves the free nodes of the boundary along their directions until the body of revolution has
    * the volume [mm^3]; to 1e-13 of it. Returns false if no node may move or the way would be longer
-   * than a tenth of an edge: the mesh is then as it was.
+   * than a fifth of an edge: the mesh is then as it was.
    */
   bool restore_volume(NewMesh &mesh, double volume, double edge_length);
 
