@@ -197,36 +197,36 @@ namespace axiforge::meshing
   }
 
 
-  std::vector<double>
-  Outline::corners(const Loop &loop, const double edge_length, std::vector<char> &kept) const
+  std::vector<Outline::Corner> Outline::corners(const Loop &loop, const double edge_length) const
   {
-    struct Corner
+    struct Candidate
     {
-      double s, rank;
-      bool   keep;
+      Corner corner;
+      double rank;
     };
-    std::vector<Corner> candidates;
-    double              s = 0;
+    std::vector<Candidate> candidates;
+    double                 s = 0;
     for (unsigned int p = 0; p < loop.size(); ++p)
       {
         const OutlinePiece &piece = loop[p], &before = loop[(p + loop.size() - 1) % loop.size()];
         const double        turn = angle_between(before.tangent(1), piece.tangent(0));
+        const bool          hard = turn > corner_angle;
         if (piece.id != before.id || (piece.node[0].tool[0] >= 0 && piece.node[0].tool[1] >= 0))
-          candidates.push_back({ s, 1e3, true });
+          candidates.push_back({ { s, true, hard }, 1e3 });
         else if (piece.tool != before.tool)
-          candidates.push_back({ s, 1e2, false });
-        else if (turn > corner_angle)
-          candidates.push_back({ s, turn, false });
+          candidates.push_back({ { s, false, hard }, 1e2 });
+        else if (hard)
+          candidates.push_back({ { s, false, hard }, turn });
         s += piece.length();
       }
     const double whole = s;
     std::stable_sort(candidates.begin(), candidates.end(),
-                     [](const Corner &a, const Corner &b) { return a.rank > b.rank; });
+                     [](const Candidate &a, const Candidate &b) { return a.rank > b.rank; });
 
     std::vector<Corner> accepted;
-    for (const Corner &corner : candidates)
+    for (const auto &[corner, rank] : candidates)
       {
-        const double least = corner.keep ? 0 : (corner.rank > 10 ? 1 : 1.5) * edge_length;
+        const double least = corner.keep ? 0 : (rank > 10 ? 1 : 1.5) * edge_length;
         bool         clear = true;
         for (const Corner &other : accepted)
           {
@@ -237,16 +237,19 @@ namespace axiforge::meshing
           accepted.push_back(corner);
       }
     if (accepted.empty())
-      accepted.push_back({ 0, 0, false });
+      accepted.push_back({ 0, false, true });
     std::sort(accepted.begin(), accepted.end(),
               [](const Corner &a, const Corner &b) { return a.s < b.s; });
-    std::vector<double> result;
-    for (const Corner &corner : accepted)
+    // A hard corner comes first: it is at vertex 0.
+    auto first = std::find_if(accepted.begin(), accepted.end(),
+                              [](const Corner &corner) { return corner.hard; });
+    if (first == accepted.end())
       {
-        result.push_back(corner.s);
-        kept.push_back(corner.keep);
+        first       = accepted.begin();
+        first->hard = true;
       }
-    return result;
+    std::rotate(accepted.begin(), first, accepted.end());
+    return accepted;
   }
 
 
@@ -306,8 +309,7 @@ namespace axiforge::meshing
         std::vector<double> start(loop.size() + 1, 0);
         for (unsigned int p = 0; p < loop.size(); ++p)
           start[p + 1] = start[p] + loop[p].length();
-        std::vector<char>         kept;
-        const std::vector<double> corner = corners(loop, edge_length, kept);
+        const std::vector<Corner> corner = corners(loop, edge_length);
 
         const auto place_of = [&](double s) {
           s                    = s >= start.back() ? s - start.back() : s;
@@ -320,17 +322,21 @@ namespace axiforge::meshing
         std::vector<double> arc; // of vertices and middles, in turn
         for (unsigned int k = 0; k < corner.size(); ++k)
           {
-            const bool   last   = k + 1 == corner.size();
-            const double end    = last ? corner[0] + start.back() : corner[k + 1];
-            const double length = end - corner[k];
-            const auto   pairs  = std::lround(0.5 * length / edge_length);
-            // A loop of one part needs four edges, so that no pair ends where it begins.
-            const unsigned int n = 2 * std::max<long>(corner.size() == 1 ? 2 : 1, pairs);
+            const Corner &next   = corner[(k + 1) % corner.size()];
+            const double  end    = next.s > corner[k].s ? next.s : next.s + start.back();
+            const double  length = end - corner[k].s;
+            // Hard corners are at even vertices, the others at odd ones. A loop of one part needs
+            // four edges, so that no pair ends where it begins.
+            const bool         odd = corner[k].hard != next.hard;
+            const unsigned int n =
+                odd ? 2 * std::max<long>(0, std::lround(0.5 * (length / edge_length - 1))) + 1
+                    : 2 * std::max<long>(corner.size() == 1 ? 2 : 1,
+                                         std::lround(0.5 * length / edge_length));
             for (unsigned int i = 0; i < n; ++i)
               {
-                const double s      = corner[k] + i * length / n;
-                const double middle = corner[k] + (i + 0.5) * length / n;
-                made.vertices.push_back(new_node(loop, place_of(s), i == 0 && kept[k]));
+                const double s      = corner[k].s + i * length / n;
+                const double middle = corner[k].s + (i + 0.5) * length / n;
+                made.vertices.push_back(new_node(loop, place_of(s), i == 0 && corner[k].keep));
                 const Place place = place_of(middle);
                 made.middles.push_back(new_node(loop, place, false));
                 made.ids.push_back(loop[place.piece].id);

@@ -21,7 +21,7 @@ namespace axiforge::meshing
   };
 
   /// A closed chain of new edges, the workpiece on its left. Edge k runs from vertex k to vertex
-  /// k + 1; corners are at even vertices, and the number of edges is even.
+  /// k + 1; sharp corners are at even vertices, and the number of edges is even.
   struct NewLoop
   {
     std::vector<NewNode>                    vertices, middles;
@@ -54,6 +54,11 @@ namespace axiforge::meshing
    * of the tool, and so are those that have come to stand inside of one. Corners stay: ends of the
    * axis, the symmetry line and named parts; nodes that touch two surfaces; and, unless they come
    * too close to each other, ends of contact and angles of more than 30 degrees.
+   *
+   * gmsh makes quadrilaterals by splitting the edges of a coarser mesh, whose vertices are the even
+   * ones: in an odd vertex two cells meet, an even one may be the corner of a single cell. So
+   * where the outline does not turn, as where it folds on to a tool, a corner is put at an odd
+   * vertex: a single cell would have an angle of 180 degrees there.
    */
   class Outline
   {
@@ -78,13 +83,19 @@ namespace axiforge::meshing
       double       xi;
     };
 
-    NewNode new_node(const Loop &loop, const Place &place, bool keep) const;
-    void    set_directions(const Loop                &loop,
-                           const std::vector<double> &arc,
-                           NewLoop                   &result,
-                           double                     length) const;
-    std::vector<double>
-    corners(const Loop &loop, double edge_length, std::vector<char> &kept) const;
+    struct Corner
+    {
+      double s;    ///< arc length [mm]
+      bool   keep; ///< the old node stays where it is
+      bool   hard; ///< the outline turns by more than 30 degrees
+    };
+
+    NewNode             new_node(const Loop &loop, const Place &place, bool keep) const;
+    void                set_directions(const Loop                &loop,
+                                       const std::vector<double> &arc,
+                                       NewLoop                   &result,
+                                       double                     length) const;
+    std::vector<Corner> corners(const Loop &loop, double edge_length) const;
 
     const scene::Scene  &scene;
     std::vector<Vector2> shift; ///< of the tools [mm]
