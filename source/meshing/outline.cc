@@ -17,6 +17,9 @@ namespace axiforge::meshing
     /// Angles of the outline above this are corners [rad].
     constexpr double corner_angle = M_PI / 6;
 
+    /// Of the length of the edges with the way from an end of contact.
+    constexpr double growth = 0.3;
+
     /// A point inside a tool by this share of the size is moved out.
     constexpr double inside = 1e-9;
 
@@ -301,7 +304,20 @@ namespace axiforge::meshing
   }
 
 
-  std::vector<NewLoop> Outline::divide(const double edge_length) const
+  std::vector<double> Outline::contact_ends(const Loop &loop, const std::vector<double> &start)
+  {
+    std::vector<double> ends;
+    for (unsigned int p = 0; p < loop.size(); ++p)
+      {
+        const OutlinePiece &piece = loop[p], &before = loop[(p + loop.size() - 1) % loop.size()];
+        if (piece.tool != before.tool && !straight(piece.id) && !straight(before.id))
+          ends.push_back(start[p]);
+      }
+    return ends;
+  }
+
+
+  std::vector<NewLoop> Outline::divide(const double edge_length, const double refinement) const
   {
     std::vector<NewLoop> result;
     for (const Loop &loop : loops)
@@ -318,24 +334,52 @@ namespace axiforge::meshing
           return Place{ p, loop[p].parameter(s - start[p]) };
         };
 
+        // Number of edges from the first corner to a place, for edges that grow by 0.3 of the way
+        // from an end of contact, where they are the shortest.
+        const std::vector<double> ends      = contact_ends(loop, start);
+        const auto                length_at = [&](const double s) {
+          double way = std::numeric_limits<double>::max();
+          for (const double end : ends)
+            {
+              const double d = std::abs(std::fmod(s, start.back()) - end);
+              way            = std::min({ way, d, start.back() - d });
+            }
+          return std::min(edge_length, edge_length / refinement + growth * way);
+        };
+
         NewLoop             made;
         std::vector<double> arc; // of vertices and middles, in turn
         for (unsigned int k = 0; k < corner.size(); ++k)
           {
-            const Corner &next   = corner[(k + 1) % corner.size()];
-            const double  end    = next.s > corner[k].s ? next.s : next.s + start.back();
-            const double  length = end - corner[k].s;
+            const Corner       &next   = corner[(k + 1) % corner.size()];
+            const double        end    = next.s > corner[k].s ? next.s : next.s + start.back();
+            const double        length = end - corner[k].s;
+            std::vector<double> count(1, 0.); // of edges up to each sample
+            const unsigned int  samples =
+                16 * static_cast<unsigned int>(std::ceil(length * refinement / edge_length));
+            for (unsigned int i = 0; i < samples; ++i)
+              count.push_back(count.back() +
+                              length / samples /
+                                  length_at(corner[k].s + (i + 0.5) * length / samples));
             // Hard corners are at even vertices, the others at odd ones. A loop of one part needs
             // four edges, so that no pair ends where it begins.
             const bool         odd = corner[k].hard != next.hard;
             const unsigned int n =
-                odd ? 2 * std::max<long>(0, std::lround(0.5 * (length / edge_length - 1))) + 1
+                odd ? 2 * std::max<long>(0, std::lround(0.5 * (count.back() - 1))) + 1
                     : 2 * std::max<long>(corner.size() == 1 ? 2 : 1,
-                                         std::lround(0.5 * length / edge_length));
+                                         std::lround(0.5 * count.back()));
+            const auto place_after = [&](const double edges) {
+              const double       wanted = edges * count.back() / n;
+              const unsigned int i      = std::clamp<int>(
+                  std::upper_bound(count.begin(), count.end(), wanted) - count.begin() - 1, 0,
+                  samples - 1);
+              return corner[k].s +
+                     length * (i + (wanted - count[i]) / (count[i + 1] - count[i])) / samples;
+            };
             for (unsigned int i = 0; i < n; ++i)
               {
-                const double s      = corner[k].s + i * length / n;
-                const double middle = corner[k].s + (i + 0.5) * length / n;
+                const double s      = i == 0 ? corner[k].s : place_after(i);
+                const double middle = 0.5 * (s + place_after(i + 1));
                 made.vertices.push_back(new_node(loop, place_of(s), i == 0 && corner[k].keep));
                 const Place place = place_of(middle);
                 made.middles.push_back(new_node(loop, place, false));

@@ -45,8 +45,7 @@ namespace axiforge::meshing
                    const State        &state,
                    const double        volume)
     {
-      Made made, best;
-      best.mesh.fault = "none";
+      Made          made;
       const Outline outline(old, scene, state.time);
       const double  area = outline.area();
       double        size = scene.remeshing.element_size > 0
@@ -54,20 +53,27 @@ namespace axiforge::meshing
                                : size_for_cells * std::sqrt(area / state.remeshing.wanted_cells);
       size = std::max(size, size_for_cells * std::sqrt(area / scene.remeshing.most_cells));
       // Another division of the outline helps where the first gives no good mesh.
+      made.mesh.fault = "gmsh makes no sound mesh";
+      double best     = -1;
       for (const double factor : { 1., 0.93, 1.07, 0.86 })
         {
-          made.mesh = mesh_outline(outline.divide(factor * size), state.boundary_ids);
-          if (made.mesh.fault.empty() && smallest_scaled_jacobian(made.mesh.mesh) > good_mesh)
+          NewMesh mesh =
+              mesh_outline(outline.divide(factor * size, scene.remeshing.contact_refinement),
+                           state.boundary_ids);
+          if (!mesh.fault.empty())
+            {
+              if (best < 0)
+                made.mesh.fault = mesh.fault;
+              continue;
+            }
+          if (const double value = smallest_scaled_jacobian(mesh.mesh); value > best)
+            {
+              made.mesh = std::move(mesh);
+              best      = value;
+            }
+          if (best > good_mesh)
             break;
-          if (made.mesh.fault.empty() &&
-              (best.mesh.fault == "none" ||
-               smallest_scaled_jacobian(made.mesh.mesh) > smallest_scaled_jacobian(best.mesh.mesh)))
-            best = made;
         }
-      if (best.mesh.fault.empty() &&
-          (!made.mesh.fault.empty() ||
-           smallest_scaled_jacobian(made.mesh.mesh) <= smallest_scaled_jacobian(best.mesh.mesh)))
-        made = best;
       if (!made.mesh.fault.empty())
         return made;
       made.volume_jump = made.mesh.mesh.volume() - volume;

@@ -145,6 +145,12 @@ namespace axiforge::scene
         "Length of the edges of the new cells [mm]. 0: about as many cells as at the start.",
         Patterns::Double(0));
     prm.add_parameter(
+        "Refinement at contact ends", contact_refinement,
+        "The element size over that where the surface leaves a tool; edges grow by 0.3 of the way "
+        "from there. Surface folds on to tools in pieces of that length: 4 halves the jumps of the "
+        "force that 2 leaves. 1: no refinement.",
+        Patterns::Double(1, 20));
+    prm.add_parameter(
         "Most cells", most_cells,
         "The element size is raised so that a new mesh has about so many cells at most.",
         Patterns::Integer(4));

@@ -65,8 +65,8 @@ namespace axiforge::meshing
   public:
     Outline(const Snapshot &snapshot, const scene::Scene &scene, double time);
 
-    /// Edges of about the given length [mm].
-    std::vector<NewLoop> divide(double edge_length) const;
+    /// Edges of about the given length [mm], the length over the refinement at ends of contact.
+    std::vector<NewLoop> divide(double edge_length, double refinement = 1) const;
 
     /// Area of the meridian section [mm^2].
     double area() const;
@@ -90,12 +90,13 @@ namespace axiforge::meshing
       bool   hard; ///< the outline turns by more than 30 degrees
     };
 
-    NewNode             new_node(const Loop &loop, const Place &place, bool keep) const;
-    void                set_directions(const Loop                &loop,
-                                       const std::vector<double> &arc,
-                                       NewLoop                   &result,
-                                       double                     length) const;
-    std::vector<Corner> corners(const Loop &loop, double edge_length) const;
+    NewNode                    new_node(const Loop &loop, const Place &place, bool keep) const;
+    void                       set_directions(const Loop                &loop,
+                                              const std::vector<double> &arc,
+                                              NewLoop                   &result,
+                                              double                     length) const;
+    static std::vector<double> contact_ends(const Loop &loop, const std::vector<double> &start);
+    std::vector<Corner>        corners(const Loop &loop, double edge_length) const;
 
     const scene::Scene  &scene;
     std::vector<Vector2> shift; ///< of the tools [mm]
