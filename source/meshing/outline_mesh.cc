@@ -55,8 +55,11 @@ namespace axiforge::meshing
       for (unsigned int l = 0; l < loops.size(); ++l)
         {
           std::vector<int> points, curves;
+          // In single precision: the rounding errors by which runs on one and on two ranks differ
+          // should not lead gmsh to other meshes. The exact places are put back afterwards.
           for (const NewNode &node : loops[l].vertices)
-            points.push_back(geo::addPoint(node.position[0], node.position[1], 0));
+            points.push_back(geo::addPoint(static_cast<float>(node.position[0]),
+                                           static_cast<float>(node.position[1]), 0));
           const unsigned int n = points.size();
           for (unsigned int k = 0; k < n; k += 2)
             {

@@ -147,8 +147,9 @@ namespace axiforge::scene
     prm.add_parameter(
         "Refinement at contact ends", contact_refinement,
         "The element size over that where the surface leaves a tool; edges grow by 0.3 of the way "
-        "from there. Surface folds on to tools in pieces of that length: 4 halves the jumps of the "
-        "force that 2 leaves. 1: no refinement.",
+        "from there. 4 halves the jumps of the force where surface folds on to tools, but meshes "
+        "fail "
+        "more often. 1: no refinement.",
         Patterns::Double(1, 20));
     prm.add_parameter(
         "Most cells", most_cells,

@@ -91,7 +91,7 @@ namespace axiforge::scene
     double       largest_penetration      = 0.02;
     unsigned int every_steps              = 0;
     double       element_size             = 0; ///< [mm]; 0: as many cells as at the start
-    double       contact_refinement       = 4;
+    double       contact_refinement       = 1;
     unsigned int most_cells               = 20000;
 
     void declare(dealii::ParameterHandler &prm);
