@@ -185,6 +185,12 @@ namespace axiforge::testing_support
       return *solver_;
     }
 
+    /// After the state got another mesh.
+    void forget_solver()
+    {
+      solver_.reset();
+    }
+
     /**
      * The flow in the geometry of the start: for this the scene has the explicit scheme, which
      * writes the equations there. The step is so short that velocities prescribed as functions of

@@ -58,6 +58,10 @@ namespace axiforge::output
                                 { "wall_contact_s", r.times.contact },
                                 { "wall_factor_s", r.times.factor },
                                 { "wall_solve_s", r.times.solve } });
+      if (scene.remeshing.enabled)
+        list.insert(list.end(), { { "remeshings", r.remeshings },
+                                  { "remeshing_volume_jump_mm3", r.remeshing_volume_jump },
+                                  { "remeshing_strain_jump_mm3", r.remeshing_strain_jump } });
       return list;
     }
   } // namespace

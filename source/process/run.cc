@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <filesystem>
 #include <iostream>
+#include <memory>
 #include <optional>
 
 #include <deal.II/base/revision.h>
@@ -8,6 +9,7 @@
 
 #include <axiforge/base/errors.h>
 #include <axiforge/meshing/initial_state.h>
+#include <axiforge/meshing/remesh.h>
 #include <axiforge/output/results.h>
 #include <axiforge/process/checkpointing.h>
 #include <axiforge/process/mesh_change.h>
@@ -90,6 +92,16 @@ namespace axiforge::process
                                                               report.refused)
                                                 : "")
                   << std::flush;
+      }
+
+      void remeshed(const State                 &state,
+                    const std::string           &reason,
+                    const meshing::RemeshResult &result) const
+      {
+        if (!quiet)
+          std::cout << fmt::format("remeshing after step {} ({}): {}\n", state.step, reason,
+                                   meshing::describe(result))
+                    << std::flush;
       }
 
       void end(const State       &state,
@@ -182,6 +194,45 @@ namespace axiforge::process
                        "does not converge "
                        "there. \"Layer viscosity = layer\" does.\n";
     }
+
+
+    /// A new mesh and with it a new solver, if the mesh could be made.
+    bool remesh(const scene::Scene                   &scene,
+                State                                &state,
+                std::unique_ptr<solvers::FlowSolver> &solver,
+                const Progress                       &progress,
+                const std::string                    &reason)
+    {
+      const meshing::RemeshResult result = meshing::remesh(scene, state);
+      progress.remeshed(state, reason, result);
+      if (result.done)
+        solver = std::make_unique<solvers::FlowSolver>(scene, state);
+      return result.done;
+    }
+
+
+    /// A step; where it fails, and remeshing is allowed, once more with a new mesh.
+    StepRecord step(const scene::Scene                   &scene,
+                    State                                &state,
+                    std::unique_ptr<solvers::FlowSolver> &solver,
+                    const Progress                       &progress,
+                    const StepRecord                     &last)
+    {
+      constexpr unsigned int repeats_before_remeshing = 2;
+      if (const std::string reason = meshing::reason_to_remesh(scene, state); !reason.empty())
+        remesh(scene, state, solver, progress, reason);
+      const double time_step = choose_step_size(scene, state, last);
+      if (scene.remeshing.enabled && state.step > 0 && state.remeshing.last_attempt < state.step)
+        try
+          {
+            return advance(scene, state, *solver, time_step, last, repeats_before_remeshing);
+          }
+        catch (const ComputationError &)
+          {
+            remesh(scene, state, solver, progress, "a step failed");
+          }
+      return advance(scene, state, *solver, time_step, last);
+    }
   } // namespace
 
 
@@ -242,8 +293,10 @@ namespace axiforge::process
           adapt_at_start(scene, state, solver, choose_step_size(scene, state, record));
         while (state.time < scene.end_time() * (1 - 1e-12) && state.step < scene.time.most_steps)
           {
-            const double time_step = choose_step_size(scene, state, record);
-            record                 = advance(scene, state, *solver, time_step, record);
+            record                       = step(scene, state, solver, progress, record);
+            record.remeshings            = state.remeshing.count;
+            record.remeshing_volume_jump = state.remeshing.volume_jump;
+            record.remeshing_strain_jump = state.remeshing.strain_jump;
             results.write(state, record);
             progress.step(record);
             sum.add(record.times);

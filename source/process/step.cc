@@ -48,6 +48,23 @@ namespace axiforge::process
     }
 
 
+    /// Length of a step by the scene's own word or by the reduction, without regard to strains and
+    /// motions [s].
+    double plain_step(const scene::Scene &scene, const State &state)
+    {
+      const scene::TimeParameters &limits = scene.time;
+      if (limits.stroke_per_step > 0)
+        {
+          const double speed = scene.tools[scene.driving_tool].motion.velocity(state.time).norm();
+          return speed > 0 ? limits.stroke_per_step / speed : scene.end_time() - state.time;
+        }
+      if (limits.time_step > 0)
+        return limits.time_step;
+      const Measures size = measure(state);
+      return limits.largest_reduction * (size.highest - size.lowest) / fastest(scene, state.time);
+    }
+
+
     void accept(State &state, solvers::FlowResult &result, const double time_step)
     {
       const std::size_t n = state.position.locally_owned_size();
@@ -82,24 +99,20 @@ namespace axiforge::process
     const double left  = end - state.time;
     const bool   given = limits.time_step > 0 || limits.stroke_per_step > 0;
 
-    double step = limits.time_step;
-    if (limits.stroke_per_step > 0)
+    double step = plain_step(scene, state);
+    if (!given && state.step > 0)
       {
-        const double speed = scene.tools[scene.driving_tool].motion.velocity(state.time).norm();
-        step               = speed > 0 ? limits.stroke_per_step / speed : left;
+        if (last.largest_strain_rate > 0)
+          step = std::min(step, limits.largest_strain_increment / last.largest_strain_rate);
+        step = std::min(step, limits.largest_motion * shortest_distortion_time(state));
       }
-    if (!given)
-      {
-        const Measures size = measure(state);
-        step = limits.largest_reduction * (size.highest - size.lowest) / fastest(scene, state.time);
-        if (state.step > 0)
-          {
-            if (last.largest_strain_rate > 0)
-              step = std::min(step, limits.largest_strain_increment / last.largest_strain_rate);
-            step = std::min(step, limits.largest_motion * shortest_distortion_time(state));
-          }
-      }
-
+    if (step < limits.smallest_step * plain_step(scene, state))
+      throw ComputationError(fmt::format(
+          "The run can't go on at time {:.6g} s, stroke {:.6g} mm, step {}: the flow has become so "
+          "uneven that a step would have to be {:.3g} s short, less than \"Time stepping/Smallest "
+          "step\" = {} of the usual one. The mesh is used up: take a finer or a graded mesh, or "
+          "\"Remeshing/Enabled = true\".",
+          state.time, scene.stroke(state.time), state.step + 1, step, limits.smallest_step));
     // What is left is shared out evenly, so that the last step is no splinter.
     return left / std::max(1., std::ceil(left / step - 1e-6));
   }
@@ -109,13 +122,15 @@ namespace axiforge::process
                      State               &state,
                      solvers::FlowSolver &solver,
                      const double         wanted,
-                     const StepRecord    &last)
+                     const StepRecord    &last,
+                     const unsigned int   most_repeats)
   {
     // After steps that had to be shortened the length comes back by and by.
     double time_step =
         last.time_step > 0 ? std::min(wanted, largest_growth * last.time_step) : wanted;
     unsigned int repeats = 0, iterations = 0;
     StepTimes    times;
+    const double shortest = std::min(wanted, scene.time.smallest_step * plain_step(scene, state));
     for (;;)
       {
         solvers::FlowResult result = solver.solve(time_step);
@@ -157,7 +172,7 @@ namespace axiforge::process
           }
         ++repeats;
         time_step /= 2;
-        if (time_step < scene.time.smallest_step * wanted || repeats > 40)
+        if (time_step < shortest || repeats > most_repeats)
           throw ComputationError(fmt::format("The run can't go on at time {:.6g} s, stroke {:.6g} "
                                              "mm, step {}: {}. The step was repeated "
                                              "{} times, down to {:.3g} s. If a cell turns over, "

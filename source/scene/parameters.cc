@@ -152,6 +152,49 @@ namespace axiforge::scene
   }
 
 
+  void RemeshingParameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter(
+        "Enabled", enabled,
+        "Whether the workpiece gets a new mesh (gmsh) when its cells are distorted, and "
+        "when a step fails.");
+    prm.add_parameter(
+        "Smallest Jacobian", smallest_jacobian,
+        "A new mesh is made when the determinant at a Gauss point over its mean in the cell (1: "
+        "undistorted, 0: turns over) falls below this, and below 0.8 of what the last new mesh "
+        "had.",
+        Patterns::Double(0, 1));
+    prm.add_parameter(
+        "Smallest vertex Jacobian", smallest_vertex_jacobian,
+        "The same at the corners of the cells, where the surface folds on to a tool. -1: not used.",
+        Patterns::Double(-1, 1));
+    prm.add_parameter(
+        "Largest penetration", largest_penetration,
+        "A new mesh is made when an edge passes through a tool between its nodes by more than this "
+        "share of its length, and by more than 1.5 times what the last new mesh had.",
+        Patterns::Double(0));
+    prm.add_parameter(
+        "Every steps", every_steps,
+        "A new mesh after so many steps, whatever the old one looks like. 0: not used.",
+        Patterns::Integer(0));
+    prm.add_parameter(
+        "Element size", element_size,
+        "Length of the edges of the new cells [mm]. 0: about as many cells as at the start.",
+        Patterns::Double(0));
+    prm.add_parameter(
+        "Refinement at contact ends", contact_refinement,
+        "The element size over that where the surface leaves a tool; edges grow by 0.3 of the way "
+        "from there. 4 halves the jumps of the force where surface folds on to tools, but meshes "
+        "fail "
+        "more often. 1: no refinement.",
+        Patterns::Double(1, 20));
+    prm.add_parameter(
+        "Most cells", most_cells,
+        "The element size is raised so that a new mesh has about so many cells at most.",
+        Patterns::Integer(4));
+  }
+
+
   void OutputParameters::declare(ParameterHandler &prm)
   {
     prm.add_parameter("Directory", directory,
@@ -277,6 +320,9 @@ namespace axiforge::scene
     prm.leave_subsection();
     prm.enter_subsection("Refinement");
     refinement.declare(prm);
+    prm.leave_subsection();
+    prm.enter_subsection("Remeshing");
+    remeshing.declare(prm);
     prm.leave_subsection();
     prm.enter_subsection("Output");
     output.declare(prm);

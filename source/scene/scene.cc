@@ -155,6 +155,7 @@ namespace axiforge::scene
       , time(parameters.time)
       , flow(parameters.flow)
       , refinement(parameters.refinement)
+      , remeshing(parameters.remeshing)
       , output(parameters.output)
       , checkpoint(parameters.checkpoint)
       , driving_tool(no_tool)

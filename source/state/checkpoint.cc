@@ -110,12 +110,14 @@ namespace axiforge
            power_tools, power_boundaries, power_plastic, power_friction, power_contact,
            power_volume, power_residual, largest_strain, largest_strain_rate, smallest_jacobian,
            smallest_vertex_jacobian, largest_radius, cells, unknowns, iterations, set_changes,
-           repeats, residual, divergence, times] = object;
+           repeats, residual, divergence, times, remeshings, remeshing_volume_jump,
+           remeshing_strain_jump] = object;
     archive(step, time, time_step, stroke, tools, boundaries, volume, relative_volume_change,
             power_tools, power_boundaries, power_plastic, power_friction, power_contact,
             power_volume, power_residual, largest_strain, largest_strain_rate, smallest_jacobian,
             smallest_vertex_jacobian, largest_radius, cells, unknowns, iterations, set_changes,
-            repeats, residual, divergence, times);
+            repeats, residual, divergence, times, remeshings, remeshing_volume_jump,
+            remeshing_strain_jump);
   }
 
   template <typename Archive> void visit(Archive &archive, ResultsProgress &object)
@@ -133,10 +135,18 @@ namespace axiforge
   }
 
   /// The numbers of the state that belong to no cell and no node.
+  template <typename Archive> void visit(Archive &archive, RemeshingRecord &object)
+  {
+    auto &[count, volume_jump, strain_jump, wanted_cells, last_attempt, jacobian, vertex_jacobian,
+           penetration] = object;
+    archive(count, volume_jump, strain_jump, wanted_cells, last_attempt, jacobian, vertex_jacobian,
+            penetration);
+  }
+
   template <typename Archive> void visit_numbers(Archive &archive, State &state)
   {
     archive(state.boundary_ids, state.time, state.step, state.last_time_step,
-            state.earlier_time_step, state.initial_volume, state.size);
+            state.earlier_time_step, state.initial_volume, state.size, state.remeshing);
   }
 
   namespace

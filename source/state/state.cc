@@ -64,6 +64,19 @@ namespace axiforge
   }
 
 
+  void State::clear_mesh()
+  {
+    hanging_nodes.clear();
+    flow_dofs.clear();
+    history_dofs.clear();
+    triangulation.clear();
+    tables = MeshTables();
+    cell_history.clear();
+    contacts.clear();
+    edge_friction.clear();
+  }
+
+
   void State::setup_dofs()
   {
     flow_dofs.distribute_dofs(flow_element);

@@ -20,11 +20,13 @@ namespace axiforge::process
    * One accepted step: solves the flow, moves the state, returns the figures. A step that fails (no
    * convergence, a cell that would turn over) is repeated with half its length; the step is at most
    * half as long again as the last one.
+   * @param most_repeats fewer than usual if there is something else to try, like a new mesh
    * @throws ComputationError that says where, at which time and stroke, and what to try
    */
   StepRecord advance(const scene::Scene  &scene,
                      State               &state,
                      solvers::FlowSolver &solver,
                      double               time_step,
-                     const StepRecord    &last = StepRecord());
+                     const StepRecord    &last         = StepRecord(),
+                     unsigned int         most_repeats = 40);
 } // namespace axiforge::process

@@ -98,6 +98,21 @@ namespace axiforge::scene
     void declare(dealii::ParameterHandler &prm);
   };
 
+  /// `subsection Remeshing`: a new mesh for the workpiece where the old one is used up.
+  struct RemeshingParameters
+  {
+    bool         enabled                  = false;
+    double       smallest_jacobian        = 0.25;
+    double       smallest_vertex_jacobian = 0.05;
+    double       largest_penetration      = 0.02;
+    unsigned int every_steps              = 0;
+    double       element_size             = 0; ///< [mm]; 0: as many cells as at the start
+    double       contact_refinement       = 1;
+    unsigned int most_cells               = 20000;
+
+    void declare(dealii::ParameterHandler &prm);
+  };
+
   /// `subsection Output`
 
   struct OutputParameters
@@ -162,6 +177,7 @@ namespace axiforge::scene
     TimeParameters                  time;
     FlowParameters                  flow;
     RefinementParameters            refinement;
+    RemeshingParameters             remeshing;
     OutputParameters                output;
     StudyParameters                 study; ///< for `axiforge study` alone
     CheckpointParameters            checkpoint;
@@ -225,6 +241,7 @@ namespace axiforge::scene
     TimeParameters                 time;
     FlowParameters                 flow;
     RefinementParameters           refinement;
+    RemeshingParameters            remeshing;
     OutputParameters               output;
     CheckpointParameters           checkpoint;
 

@@ -16,6 +16,7 @@
 
 #include <axiforge/base/geometry.h>
 #include <axiforge/laws/smm_layer.h>
+#include <axiforge/state/remeshing_record.h>
 
 namespace axiforge
 {
@@ -144,6 +145,12 @@ namespace axiforge
     double       earlier_time_step = 0; ///< of the step before the last
     double       initial_volume    = 0; ///< [mm^3]
     double       size              = 0; ///< largest extent of the workpiece at the start [mm]
+
+    RemeshingRecord remeshing;
+
+    /// Takes mesh and unknowns away so that another mesh can take their place; time, step, volume,
+    /// size and records stay. Collective.
+    void clear_mesh();
 
     /// Distributes the unknowns and sizes the fields, which come out zero. The numbering depends on
     /// the mesh alone, not on the order in which it was refined, so that a checkpoint can be

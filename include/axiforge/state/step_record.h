@@ -70,5 +70,9 @@ namespace axiforge
     unsigned int cells = 0, unknowns = 0, iterations = 0, set_changes = 0, repeats = 0;
     double       residual = 0, divergence = 0;
     StepTimes    times;
+
+    /// Of all remeshings so far, see RemeshingRecord.
+    unsigned int remeshings            = 0;
+    double       remeshing_volume_jump = 0, remeshing_strain_jump = 0;
   };
 } // namespace axiforge

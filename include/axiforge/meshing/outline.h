@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <deal.II/base/types.h>
+
+#include <axiforge/meshing/snapshot.h>
+#include <axiforge/scene/scene.h>
+
+namespace axiforge::meshing
+{
+  /// A node of the new outline.
+  struct NewNode
+  {
+    Point       position;  ///< [mm]
+    SurfaceNode carried;   ///< what the old surface knows there
+    Vector2     direction; ///< in which it moves to restore the volume: 1 along the outer normal,
+                           ///< less near a tool, 0 where it is held
+  };
+
+  /// A closed chain of new edges, the workpiece on its left. Edge k runs from vertex k to vertex
+  /// k + 1; sharp corners are at even vertices, and the number of edges is even.
+  struct NewLoop
+  {
+    std::vector<NewNode>                    vertices, middles;
+    std::vector<dealii::types::boundary_id> ids;
+  };
+
+  /// A part of the old outline that is free or touches one tool: a parabola.
+  struct OutlinePiece
+  {
+    std::array<Point, 3>       x; ///< start, end, middle
+    dealii::types::boundary_id id;
+    int                        tool; ///< that both ends and the middle touch; -1: none
+    std::array<SurfaceNode, 3> node;
+    std::array<double, 17>     arc; ///< length from the start at sixteenths of the parameter [mm]
+
+    double length() const
+    {
+      return arc.back();
+    }
+    /// @param xi 0 at the start, 1 at the end
+    Point   position(double xi) const;
+    Vector2 tangent(double xi) const;
+    double  parameter(double arc_length) const;
+  };
+
+  /**
+   * The outline of the workpiece as it stands, and its division into new edges.
+   *
+   * New nodes stand on the old Q2 edges; those between touching nodes are moved on to the profile
+   * of the tool, and so are those that have come to stand inside of one. Corners stay: ends of the
+   * axis, the symmetry line and named parts; nodes that touch two surfaces; and, unless they come
+   * too close to each other, ends of contact and angles of more than 30 degrees.
+   *
+   * gmsh makes quadrilaterals by splitting the edges of a coarser mesh, whose vertices are the even
+   * ones: in an odd vertex two cells meet, an even one may be the corner of a single cell. So
+   * where the outline does not turn, as where it folds on to a tool, a corner is put at an odd
+   * vertex: a single cell would have an angle of 180 degrees there.
+   */
+  class Outline
+  {
+  public:
+    Outline(const Snapshot &snapshot, const scene::Scene &scene, double time);
+
+    /// Edges of about the given length [mm], the length over the refinement at ends of contact.
+    std::vector<NewLoop> divide(double edge_length, double refinement = 1) const;
+
+    /// Area of the meridian section [mm^2].
+    double area() const;
+
+    /// Largest depth of an edge inside a tool between its nodes, over the length of the edge.
+    static double penetration(const State &state, const scene::Scene &scene);
+
+  private:
+    using Loop = std::vector<OutlinePiece>;
+
+    struct Place
+    {
+      unsigned int piece;
+      double       xi;
+    };
+
+    struct Corner
+    {
+      double s;    ///< arc length [mm]
+      bool   keep; ///< the old node stays where it is
+      bool   hard; ///< the outline turns by more than 30 degrees
+    };
+
+    NewNode                    new_node(const Loop &loop, const Place &place, bool keep) const;
+    void                       set_directions(const Loop                &loop,
+                                              const std::vector<double> &arc,
+                                              NewLoop                   &result,
+                                              double                     length) const;
+    static std::vector<double> contact_ends(const Loop &loop, const std::vector<double> &start);
+    std::vector<Corner>        corners(const Loop &loop, double edge_length) const;
+
+    const scene::Scene  &scene;
+    std::vector<Vector2> shift; ///< of the tools [mm]
+    std::vector<Loop>    loops;
+  };
+} // namespace axiforge::meshing

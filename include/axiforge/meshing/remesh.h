@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <string>
+
+#include <axiforge/scene/scene.h>
+#include <axiforge/state/measures.h>
+#include <axiforge/state/state.h>
+
+namespace axiforge::meshing
+{
+  /**
+   * Why the workpiece should have a new mesh now, by the entries of the section Remeshing; empty:
+   * no need. After a remeshing the limits are relaxed to what the new mesh has, so that what a new
+   * mesh can't mend does not call for another one in every step. Collective.
+   */
+  std::string reason_to_remesh(const scene::Scene &scene, const State &state);
+
+  /// What a remeshing did.
+  struct RemeshResult
+  {
+    bool        done = false;
+    std::string fault; ///< if not done: why; the state is as it was
+
+    unsigned int cells_before = 0, cells = 0;
+    double       jacobian_before = 0, jacobian = 0; ///< smallest at Gauss points and vertices
+    double       volume          = 0;               ///< before [mm^3]
+    double       volume_jump     = 0; ///< of the new outline, before the volume was restored [mm^3]
+    bool         restored        = false; ///< false: there is no free surface, the jump stays
+    double       strain_integral = 0, strain_jump = 0; ///< int strain dV and its change [mm^3]
+  };
+
+  /**
+   * Gives the workpiece a new mesh in its present shape and carries all fields over: doc/theory.md,
+   * section 11. The boundary keeps its names, nodes on tools stay on them, the volume is restored
+   * by the free surface. Everything that looks into the state's mesh (FlowSolver) has to be made
+   * anew. Collective.
+   */
+  RemeshResult remesh(const scene::Scene &scene, State &state);
+
+  /// One line for the screen.
+  std::string describe(const RemeshResult &result);
+} // namespace axiforge::meshing

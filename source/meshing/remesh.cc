@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <cmath>
+#include <limits>
+
+#include <deal.II/base/mpi.h>
+
+#include <fmt/format.h>
+
+#include <axiforge/base/errors.h>
+#include <axiforge/meshing/outline_mesh.h>
+#include <axiforge/meshing/remesh.h>
+#include <axiforge/meshing/transfer.h>
+
+namespace axiforge::meshing
+{
+  namespace MPI = dealii::Utilities::MPI;
+
+  namespace
+  {
+    /// After a try that failed, so many steps pass before the next one for the same reason.
+    constexpr unsigned int patience = 5;
+
+    /// How much worse than right after the last remeshing a mesh has to be for another.
+    constexpr double worse_jacobian = 0.8, worse_penetration = 1.5;
+
+
+    /// Edge length over sqrt(area / cells): gmsh's meshes have 1.3 times the cells of a square grid
+    /// (324 wanted: 400 to 440 made).
+    constexpr double size_for_cells = 1.14;
+
+    /// Worst Jacobian at Gauss points and vertices of a mesh that needs no further try.
+    constexpr double good_mesh = 0.2;
+
+
+    struct Made
+    {
+      NewMesh mesh;
+      double  volume_jump = 0;
+      bool    restored    = false;
+    };
+
+
+    Made make_mesh(const Snapshot     &old,
+                   const scene::Scene &scene,
+                   const State        &state,
+                   const double        volume)
+    {
+      Made          made;
+      const Outline outline(old, scene, state.time);
+      const double  area = outline.area();
+      double        size = scene.remeshing.element_size > 0
+                               ? scene.remeshing.element_size
+                               : size_for_cells * std::sqrt(area / state.remeshing.wanted_cells);
+      size = std::max(size, size_for_cells * std::sqrt(area / scene.remeshing.most_cells));
+      // Another division of the outline helps where the first gives no good mesh.
+      made.mesh.fault = "gmsh makes no sound mesh";
+      double best     = -1;
+      for (const double factor : { 1., 0.93, 1.07, 0.86 })
+        {
+          NewMesh mesh =
+              mesh_outline(outline.divide(factor * size, scene.remeshing.contact_refinement),
+                           state.boundary_ids);
+          if (!mesh.fault.empty())
+            {
+              if (best < 0)
+                made.mesh.fault = mesh.fault;
+              continue;
+            }
+          if (const double value = smallest_scaled_jacobian(mesh.mesh); value > best)
+            {
+              made.mesh = std::move(mesh);
+              best      = value;
+            }
+          if (best > good_mesh)
+            break;
+        }
+      if (!made.mesh.fault.empty())
+        return made;
+      made.volume_jump = made.mesh.mesh.volume() - volume;
+      made.restored    = restore_volume(made.mesh, volume, size);
+      return made;
+    }
+
+
+    /// That of the first rank for all of them.
+    void share(Made &made, const MPI_Comm communicator)
+    {
+      made.mesh.fault = MPI::broadcast(communicator, made.mesh.fault, 0);
+      if (!made.mesh.fault.empty())
+        return;
+      share_from_first_rank(made.mesh.mesh, communicator);
+      made.volume_jump = MPI::broadcast(communicator, made.volume_jump, 0);
+      made.restored    = MPI::broadcast(communicator, made.restored ? 1 : 0, 0) == 1;
+    }
+
+
+    std::vector<CarriedEdge> carried_edges(const NewMesh &mesh, const MPI_Comm communicator)
+    {
+      static_assert(sizeof(CarriedEdge) % sizeof(double) == 0);
+      std::vector<double> numbers;
+      for (const std::array<NewNode, 3> &nodes : mesh.boundary)
+        {
+          CarriedEdge edge;
+          for (unsigned int a = 0; a < 3; ++a)
+            {
+              edge.position[a][0] = nodes[a].position[0];
+              edge.position[a][1] = nodes[a].position[1];
+              edge.node[a]        = nodes[a].carried;
+            }
+          const double *first = reinterpret_cast<const double *>(&edge);
+          numbers.insert(numbers.end(), first, first + sizeof(CarriedEdge) / sizeof(double));
+        }
+      numbers = MPI::broadcast(communicator, numbers, 0);
+      std::vector<CarriedEdge> edges(numbers.size() * sizeof(double) / sizeof(CarriedEdge));
+      std::copy(numbers.begin(), numbers.end(), reinterpret_cast<double *>(edges.data()));
+      return edges;
+    }
+
+
+    /// Faces, normals and gaps of the contacts at the present time.
+    void complete_contacts(const scene::Scene &scene, State &state)
+    {
+      for (unsigned int b = 0; b < state.contacts.size(); ++b)
+        {
+          NodeContact &contact = state.contacts[b];
+          for (unsigned int i = 0; i < 2 && contact.tool[i] != no_tool; ++i)
+            {
+              const scene::Tool            &tool = scene.tools[contact.tool[i]];
+              std::array<tools::Contact, 2> found;
+              const unsigned int            n =
+                  tool.profile.find(Point(state.node_position(state.tables.boundary_nodes[b].node) -
+                                          tool.motion.displacement(state.time)),
+                                    std::numeric_limits<double>::max(), found);
+              const unsigned int which = i == 1 && n == 2 && contact.tool[0] == contact.tool[1];
+              if (n == 0)
+                continue;
+              contact.face[i]   = found[which].face;
+              contact.normal[i] = found[which].normal;
+              contact.gap[i]    = found[which].gap;
+            }
+        }
+    }
+
+
+    double worst_jacobian(const Measures &measures)
+    {
+      return std::min(measures.smallest_jacobian, measures.smallest_vertex_jacobian);
+    }
+  } // namespace
+
+
+  std::string reason_to_remesh(const scene::Scene &scene, const State &state)
+  {
+    const scene::RemeshingParameters &limits = scene.remeshing;
+    const RemeshingRecord            &record = state.remeshing;
+    if (!limits.enabled || state.step == 0 || state.step == record.last_attempt)
+      return "";
+    if (limits.every_steps > 0 && state.step % limits.every_steps == 0)
+      return fmt::format("every {} steps", limits.every_steps);
+    if (record.last_attempt > 0 && state.step < record.last_attempt + patience &&
+        record.jacobian <= 0)
+      return "";
+    const Measures measures = measure(state);
+    if (measures.smallest_jacobian <
+        std::min(limits.smallest_jacobian, worse_jacobian * record.jacobian))
+      return fmt::format("a Jacobian of {:.3g} near r = {:.4g} mm, z = {:.4g} mm",
+                         measures.smallest_jacobian, measures.worst_place[0],
+                         measures.worst_place[1]);
+    if (measures.smallest_vertex_jacobian <
+        std::min(limits.smallest_vertex_jacobian, worse_jacobian * record.vertex_jacobian))
+      return fmt::format("a Jacobian of {:.3g} at a vertex", measures.smallest_vertex_jacobian);
+    const double depth = Outline::penetration(state, scene);
+    if (depth > std::max(limits.largest_penetration, worse_penetration * record.penetration))
+      return fmt::format("an edge passes through a tool by {:.3g} of its length", depth);
+    return "";
+  }
+
+
+  RemeshResult remesh(const scene::Scene &scene, State &state)
+  {
+    RemeshResult   result;
+    const Measures before  = measure(state);
+    result.cells_before    = state.tables.n_global_cells;
+    result.jacobian_before = worst_jacobian(before);
+    result.volume          = before.volume;
+    if (state.remeshing.wanted_cells == 0)
+      state.remeshing.wanted_cells = result.cells_before;
+    state.remeshing.last_attempt = state.step;
+
+    const Snapshot old = take_snapshot(state);
+    Made           made;
+    if (MPI::this_mpi_process(state.communicator) == 0)
+      try
+        {
+          made = make_mesh(old, scene, state, before.volume);
+        }
+      catch (const std::exception &error)
+        {
+          made.mesh.fault = error.what();
+        }
+    share(made, state.communicator);
+    if (!made.mesh.fault.empty())
+      {
+        result.fault             = made.mesh.fault;
+        state.remeshing.jacobian = 0; // no trigger but a worse mesh for some steps
+        return result;
+      }
+
+    result.strain_integral                  = strain_integral(state);
+    const std::vector<CarriedEdge> boundary = carried_edges(made.mesh, state.communicator);
+    state.clear_mesh();
+    create_triangulation(made.mesh.mesh, state.triangulation);
+    state.setup_dofs();
+    interpolate_geometry(made.mesh.mesh, state.flow_dofs, state.position);
+    state.setup_tables();
+    transfer(old, boundary, state);
+    complete_contacts(scene, state);
+
+    const Measures after    = measure(state);
+    result.done             = true;
+    result.cells            = state.tables.n_global_cells;
+    result.jacobian         = worst_jacobian(after);
+    result.volume_jump      = made.volume_jump;
+    result.restored         = made.restored;
+    result.strain_jump      = strain_integral(state) - result.strain_integral;
+    RemeshingRecord &record = state.remeshing;
+    ++record.count;
+    record.volume_jump += result.volume_jump;
+    record.strain_jump += result.strain_jump;
+    record.jacobian        = after.smallest_jacobian;
+    record.vertex_jacobian = after.smallest_vertex_jacobian;
+    record.penetration     = Outline::penetration(state, scene);
+    return result;
+  }
+
+
+  std::string describe(const RemeshResult &result)
+  {
+    if (!result.done)
+      return "the mesh stays: " + result.fault;
+    return fmt::format(
+        "{} -> {} cells, worst Jacobian {:.3g} -> {:.3g}, volume {:+.2e}{}, int "
+        "strain dV {:+.2e}",
+        result.cells_before, result.cells, result.jacobian_before, result.jacobian,
+        result.volume_jump / result.volume, result.restored ? " (restored)" : " (not restored)",
+        result.strain_integral > 0 ? result.strain_jump / result.strain_integral : 0.);
+  }
+} // namespace axiforge::meshing
