@@ -100,8 +100,8 @@ namespace axiforge
 
   template <typename Archive> void visit(Archive &archive, StepTimes &object)
   {
-    auto &[residual, assembly, analyse, factor, solve, contact, total] = object;
-    archive(residual, assembly, analyse, factor, solve, contact, total);
+    auto &[residual, assembly, factor, solve, contact, total] = object;
+    archive(residual, assembly, factor, solve, contact, total);
   }
 
   template <typename Archive> void visit(Archive &archive, StepRecord &object)

@@ -28,13 +28,12 @@ namespace axiforge
   /// Seconds of the step's phases; wall time of this rank.
   struct StepTimes
   {
-    double residual = 0, assembly = 0, analyse = 0, factor = 0, solve = 0, contact = 0, total = 0;
+    double residual = 0, assembly = 0, factor = 0, solve = 0, contact = 0, total = 0;
 
     void add(const StepTimes &other)
     {
       residual += other.residual;
       assembly += other.assembly;
-      analyse += other.analyse;
       factor += other.factor;
       solve += other.solve;
       contact += other.contact;
