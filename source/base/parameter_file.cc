@@ -220,6 +220,7 @@ namespace axiforge
   {
     std::vector<std::string> open_files;
     read_file(path, open_files);
+    n_of_file_ = statements_.size();
     for (const std::string &text : overrides)
       add_override(text);
   }
@@ -430,6 +431,56 @@ namespace axiforge
   const std::string &ParameterFile::text() const
   {
     return text_;
+  }
+
+  std::vector<std::string> ParameterFile::sections_of_family(const std::string &family) const
+  {
+    std::vector<std::string> members;
+    unsigned int             depth = 0;
+    for (const Statement &statement : statements_)
+      if (statement.keyword == Keyword::end)
+        --depth;
+      else if (statement.keyword == Keyword::subsection && depth++ == 0 &&
+               statement.name.compare(0, family.size() + 1, family + " ") == 0)
+        {
+          const std::string member = trimmed(statement.name.substr(family.size()));
+          if (std::find(members.begin(), members.end(), member) == members.end())
+            members.push_back(member);
+        }
+    return members;
+  }
+
+  ParameterFile ParameterFile::seen_by(const std::string &family, const std::string &member) const
+  {
+    ParameterFile result(*this);
+    result.statements_.clear();
+    // Common and own statements of the file, then those of the command line.
+    for (const bool overrides : { false, true })
+      {
+        std::vector<Statement> common, own;
+        const std::size_t      begin = overrides ? n_of_file_ : 0,
+                          end        = overrides ? statements_.size() : n_of_file_;
+        std::string  open; // the member whose section this is; empty outside of the family
+        unsigned int depth = 0;
+        for (std::size_t i = begin; i < end; ++i)
+          {
+            const Statement &statement = statements_[i];
+            if (statement.keyword == Keyword::subsection && depth++ == 0 &&
+                statement.name.compare(0, family.size() + 1, family + " ") == 0)
+              open = trimmed(statement.name.substr(family.size()));
+            else if (statement.keyword == Keyword::end && --depth == 0 && !open.empty())
+              open.clear();
+            else if (open.empty())
+              common.push_back(statement);
+            else if (open == member)
+              own.push_back(statement);
+          }
+        result.statements_.insert(result.statements_.end(), common.begin(), common.end());
+        result.statements_.insert(result.statements_.end(), own.begin(), own.end());
+        if (!overrides)
+          result.n_of_file_ = result.statements_.size();
+      }
+    return result;
   }
 
   std::string ParameterFile::resolved_text() const

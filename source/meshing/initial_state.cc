@@ -56,6 +56,56 @@ namespace axiforge::meshing
   }
 
 
+  scene::WorkpieceOutline outline_of(const State &state)
+  {
+    namespace MPI = dealii::Utilities::MPI;
+    scene::WorkpieceOutline                           outline;
+    std::map<dealii::types::boundary_id, std::string> name_of;
+    for (const auto &[name, id] : state.boundary_ids)
+      if (id != axis_id && id != symmetry_id && id != surface_id)
+        {
+          name_of[id] = name;
+          outline.boundary_names.push_back(name);
+        }
+
+    // Numbers that can be sent: r, z, whether tools can touch, the named parts or -1.
+    std::vector<std::array<double, 5>> mine;
+    for (const BoundaryNode &node : state.tables.boundary_nodes)
+      if (node.owned)
+        {
+          const Point x    = state.node_position(node.node);
+          const auto  part = [&](const unsigned int i) {
+            return name_of.count(node.prescribed[i]) ? static_cast<double>(node.prescribed[i])
+                                                      : -1.;
+          };
+          mine.push_back({ { x[0], x[1], node.free_surface ? 1. : 0., part(0), part(1) } });
+        }
+    std::vector<std::array<double, 5>> all;
+    for (const auto &part : MPI::all_gather(state.communicator, mine))
+      all.insert(all.end(), part.begin(), part.end());
+    std::sort(all.begin(), all.end());
+
+    outline.lower = Point(1e300, 1e300);
+    outline.upper = Point(-1e300, -1e300);
+    for (const auto &node : all)
+      {
+        const Point x(node[0], node[1]);
+        for (unsigned int c = 0; c < 2; ++c)
+          {
+            outline.lower[c] = std::min(outline.lower[c], x[c]);
+            outline.upper[c] = std::max(outline.upper[c], x[c]);
+          }
+        if (node[2] > 0)
+          outline.boundary_points.push_back(x);
+        for (const unsigned int i : { 3u, 4u })
+          if (node[i] >= 0)
+            outline.named_points[name_of.at(static_cast<dealii::types::boundary_id>(node[i]))]
+                .push_back(x);
+      }
+    return outline;
+  }
+
+
   void refine_at_start(State &state, const std::function<bool(const Point &)> &choose)
   {
     std::vector<dealii::types::global_dof_index> dofs(state.flow_element.n_dofs_per_cell());

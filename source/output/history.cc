@@ -44,6 +44,7 @@ namespace axiforge::output
                                 { "largest_strain", r.largest_strain },
                                 { "largest_strain_rate_per_s", r.largest_strain_rate },
                                 { "largest_radius_mm", r.largest_radius },
+                                { "height_mm", r.height },
                                 { "smallest_jacobian", r.smallest_jacobian },
                                 { "smallest_vertex_jacobian", r.smallest_vertex_jacobian },
                                 { "cells", r.cells },
@@ -58,6 +59,8 @@ namespace axiforge::output
                                 { "wall_contact_s", r.times.contact },
                                 { "wall_factor_s", r.times.factor },
                                 { "wall_solve_s", r.times.solve } });
+      if (scene.process.fill_radius > 0)
+        list.emplace_back("fill", r.fill);
       if (scene.remeshing.enabled)
         list.insert(list.end(), { { "remeshings", r.remeshings },
                                   { "remeshing_volume_jump_mm3", r.remeshing_volume_jump },

@@ -13,6 +13,30 @@
 
 namespace axiforge::output
 {
+  void make_folder(const std::string &folder)
+  {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error)
+      throw InputError::entry("Output/Directory", folder,
+                              "the folder can't be made (" + error.message() + ")",
+                              "a folder that you may write to", "Choose another with --output");
+  }
+
+
+  void remove_results(const std::string &folder)
+  {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(folder + "/fields", ignored))
+      for (const auto &entry : std::filesystem::directory_iterator(folder + "/fields"))
+        if (entry.path().extension() == ".vtu" || entry.path().extension() == ".part")
+          std::filesystem::remove(entry.path(), ignored);
+    for (const char *name : { "fields.pvd", "tools.pvd", "history.csv", "checkpoint.axi",
+                              "checkpoint.old.axi", "chain.csv", "chain.md" })
+      std::filesystem::remove(folder + "/" + name, ignored);
+  }
+
+
   Results::Results(const scene::Scene    &scene,
                    const State           &state,
                    const std::string     &directory,
@@ -24,12 +48,7 @@ namespace axiforge::output
     if (resumed)
       done = *resumed;
     on_first_rank(state.communicator, [&] {
-      std::error_code error;
-      std::filesystem::create_directories(folder + "/fields", error);
-      if (error)
-        throw InputError::entry("Output/Directory", folder,
-                                "the folder can't be made (" + error.message() + ")",
-                                "a folder that you may write to", "Choose another with --output");
+      make_folder(folder + "/fields");
       if (resumed)
         continue_folder(state, provenance);
       else
@@ -42,14 +61,7 @@ namespace axiforge::output
 
   void Results::start_folder(const Provenance &provenance)
   {
-    // What an earlier run has left here would mix with ours.
-    std::error_code ignored;
-    for (const auto &entry : std::filesystem::directory_iterator(folder + "/fields"))
-      if (entry.path().extension() == ".vtu" || entry.path().extension() == ".part")
-        std::filesystem::remove(entry.path(), ignored);
-    for (const char *name :
-         { "fields.pvd", "tools.pvd", "history.csv", "checkpoint.axi", "checkpoint.old.axi" })
-      std::filesystem::remove(folder + "/" + name, ignored);
+    remove_results(folder); // what an earlier run has left here would mix with ours
     write_file_atomically(folder + "/input.prm", provenance.input);
     write_file_atomically(folder + "/parameters.prm", provenance.parameters);
     write_file_atomically(folder + "/versions.txt", provenance.versions);

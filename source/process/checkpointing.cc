@@ -82,22 +82,35 @@ namespace axiforge::process
     }
 
 
-    /// Entries that say nothing about the body and what is done to it.
-    bool may_differ(const std::string &path)
+    const std::string of_operation = "Operation ";
+
+
+    /// The name of the operation an entry belongs to; empty without operations.
+    std::string operation_of(const std::string &path)
     {
-      for (const char *section : { "Output/", "Checkpoint/", "Time stepping/", "Flow solver/" })
+      return path.compare(0, of_operation.size(), of_operation) == 0
+                 ? path.substr(of_operation.size(), path.find('/') - of_operation.size())
+                 : "";
+    }
+
+
+    /// Entries that say nothing about the body and what is done to it.
+    bool may_differ(std::string path)
+    {
+      if (!operation_of(path).empty())
+        path.erase(0, path.find('/') + 1);
+      for (const char *section :
+           { "Output/", "Checkpoint/", "Time stepping/", "Flow solver/", "Study/" })
         if (path.compare(0, std::string(section).size(), section) == 0)
           return true;
-      return path == "Title" || path == "Process/End stroke" || path == "Process/End time";
+      return path == "Title" || path.compare(0, 12, "Process/End ") == 0 ||
+             path == "Process/Dwell" || path == "Operations";
     }
   } // namespace
 
 
-  Checkpointing::Checkpointing(const scene::Scene &scene,
-                               const std::string  &folder,
-                               const std::string  &parameters)
-      : scene(scene)
-      , folder(folder)
+  Checkpointing::Checkpointing(const std::string &folder, const std::string &parameters)
+      : folder(folder)
       , parameters(parameters)
   {
     set_handlers();
@@ -110,8 +123,18 @@ namespace axiforge::process
   }
 
 
-  void
-  Checkpointing::write(const State &state, const StepRecord &record, const output::Results &results)
+  void Checkpointing::enter(const scene::Scene    &new_scene,
+                            const ChainProgress   &new_chain,
+                            const output::Results &new_results)
+  {
+    scene     = &new_scene;
+    chain     = &new_chain;
+    results   = &new_results;
+    last_step = static_cast<unsigned int>(-1);
+  }
+
+
+  void Checkpointing::write(const State &state, const StepRecord &record)
   {
     const std::string path = folder + "/checkpoint.axi";
     on_first_rank(state.communicator, [&] {
@@ -128,15 +151,16 @@ namespace axiforge::process
       if (!error)
         std::filesystem::rename(link, old, error);
     });
-    save_checkpoint(state, { parameters, record, results.progress() }, path);
+    save_checkpoint(state, { parameters, record, results->progress(), *chain }, path);
     last_step = state.step;
+    last_kept = fmt::format(
+        "after step {}{}", state.step,
+        chain->present.name.empty() ? "" : " of operation \"" + chain->present.name + "\"");
     since_last.restart();
   }
 
 
-  bool Checkpointing::after_step(const State           &state,
-                                 const StepRecord      &record,
-                                 const output::Results &results)
+  bool Checkpointing::after_step(const State &state, const StepRecord &record)
   {
     // The signal may have reached one rank only, and the clocks differ.
     enum Wish
@@ -146,7 +170,7 @@ namespace axiforge::process
       request,
       stop
     };
-    const scene::CheckpointParameters &when = scene.checkpoint;
+    const scene::CheckpointParameters &when = scene->checkpoint;
     int                                wish = none;
     if ((when.every_steps > 0 && state.step % when.every_steps == 0) ||
         (when.every_minutes > 0 && since_last.wall_time() >= 60 * when.every_minutes))
@@ -161,39 +185,33 @@ namespace axiforge::process
       throw ComputationError(fmt::format(
           "The run was asked to stop by a signal and has done so at time {:.6g} s, stroke {:.6g} "
           "mm, after step {}.",
-          state.time, scene.stroke(state.time), state.step));
+          state.time, scene->stroke(state.time), state.step));
     if (wish != none)
-      write(state, record, results);
+      write(state, record);
     return wish == request;
   }
 
 
-  void Checkpointing::at_end(const State           &state,
-                             const StepRecord      &record,
-                             const output::Results &results)
+  void Checkpointing::at_end(const State &state, const StepRecord &record)
   {
-    if (scene.checkpoint.regular() && last_step != state.step)
-      write(state, record, results);
+    if ((scene->checkpoint.regular() || more_follow) && last_step != state.step)
+      write(state, record);
   }
 
 
-  std::string Checkpointing::rescue(const State           &state,
-                                    const StepRecord      &record,
-                                    const output::Results &results) noexcept
+  std::string Checkpointing::rescue(const State &state, const StepRecord &record) noexcept
   {
-    const std::string path = folder + "/checkpoint.axi";
-    if (state.step == 0)
-      return {};
     try
       {
         // If the step's row could not be written, its state would leave a gap: the checkpoint
         // before it stays.
-        if (last_step != state.step && results.progress().last_step == state.step)
-          write(state, record, results);
-        if (last_step == static_cast<unsigned int>(-1))
+        if (state.step > 0 && last_step != state.step &&
+            results->progress().last_step == state.step)
+          write(state, record);
+        if (last_kept.empty())
           return {};
-        return fmt::format(" The state after step {} is kept in \"{}\": --resume continues there.",
-                           last_step, path);
+        return fmt::format(" The state {} is kept in \"{}\": --resume continues there.", last_kept,
+                           folder + "/checkpoint.axi");
       }
     catch (const std::exception &error)
       {
@@ -220,8 +238,16 @@ namespace axiforge::process
   }
 
 
-  void check_same_scene(const std::string &before, const std::string &now, const std::string &path)
+  void check_same_scene(const std::string              &before,
+                        const std::string              &now,
+                        const std::vector<std::string> &begun,
+                        const std::string              &path)
   {
+    const auto matters = [&](const std::string &entry) {
+      const std::string operation = operation_of(entry);
+      return !may_differ(entry) &&
+             (operation.empty() || std::find(begun.begin(), begun.end(), operation) != begun.end());
+    };
     const auto old_entries = entries_of(before), new_entries = entries_of(now);
     const auto differs = [&](const std::string &entry, const std::string &was,
                              const std::string &is) {
@@ -232,7 +258,7 @@ namespace axiforge::process
           "Put it back, or start without --resume");
     };
     for (const auto &[entry, value] : old_entries)
-      if (!may_differ(entry))
+      if (matters(entry))
         {
           const auto found = new_entries.find(entry);
           if (found == new_entries.end())
@@ -241,7 +267,7 @@ namespace axiforge::process
             throw differs(entry, value, found->second);
         }
     for (const auto &[entry, value] : new_entries)
-      if (!may_differ(entry) && !old_entries.count(entry))
+      if (matters(entry) && !old_entries.count(entry))
         throw differs(entry, "(not there)", value);
   }
 } // namespace axiforge::process

@@ -1,138 +1,24 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <filesystem>
 #include <iostream>
-#include <memory>
 #include <optional>
 
 #include <deal.II/base/revision.h>
-#include <deal.II/base/timer.h>
 
+#include <axiforge/base/collective.h>
 #include <axiforge/base/errors.h>
 #include <axiforge/meshing/initial_state.h>
-#include <axiforge/meshing/remesh.h>
 #include <axiforge/output/results.h>
+#include <axiforge/process/chain_summary.h>
 #include <axiforge/process/checkpointing.h>
-#include <axiforge/process/mesh_change.h>
+#include <axiforge/process/operation.h>
+#include <axiforge/process/placement.h>
 #include <axiforge/process/run.h>
-#include <axiforge/process/step.h>
 
 namespace axiforge::process
 {
   namespace
   {
-    std::string duration(const double seconds)
-    {
-      const int whole = static_cast<int>(std::lround(seconds));
-      return seconds < 60     ? fmt::format("{:.1f} s", seconds)
-             : seconds < 3600 ? fmt::format("{}:{:02} min", whole / 60, whole % 60)
-                              : fmt::format("{}:{:02} h", whole / 3600, whole / 60 % 60);
-    }
-
-
-    /// Lines for a log as well as for a terminal: one per step, on the first rank.
-    class Progress
-    {
-    public:
-      Progress(const scene::Scene &scene, const bool quiet)
-          : scene(scene)
-          , quiet(quiet)
-      {
-      }
-
-      void start(const State &state)
-      {
-        start_time = state.time;
-        start_step = state.step;
-        if (quiet)
-          return;
-        if (state.step > 0)
-          std::cout << fmt::format("resumed after step {}, time {:.6g} s\n", state.step,
-                                   state.time);
-        if (!scene.title.empty())
-          std::cout << scene.title << '\n';
-        std::cout << fmt::format(
-                         "{} cells, {} unknowns, {} tools, end at {:.6g} s, stroke {:.6g} mm\n",
-                         state.tables.n_global_cells, state.n_unknowns(), scene.tools.size(),
-                         scene.end_time(), scene.stroke(scene.end_time()))
-                  << std::flush;
-      }
-
-      void step(const StepRecord &record) const
-      {
-        if (quiet)
-          return;
-        std::string forces;
-        for (unsigned int i = 0; i < record.tools.size(); ++i)
-          forces += fmt::format("  {} {:.6g} N", scene.tools[i].name, record.tools[i].force);
-        for (unsigned int i = 0; i < record.boundaries.size(); ++i)
-          if (scene.boundaries[i].is_velocity)
-            forces += fmt::format("  {} {:.6g} MPa", scene.boundaries[i].name,
-                                  record.boundaries[i].pressure);
-        const double left =
-            timer.wall_time() / (record.time - start_time) * (scene.end_time() - record.time);
-        std::cout << fmt::format(
-                         "step {:4}  t {:.5g} s  stroke {:.5g} mm{}  iterations {}  cells {}  left "
-                         "{}{}\n",
-                         record.step, record.time, record.stroke, forces, record.iterations,
-                         record.cells, duration(left),
-                         record.repeats ? fmt::format("  (repeated {} times)", record.repeats) : "")
-                  << std::flush;
-      }
-
-      void mesh(const meshing::AdaptReport &report) const
-      {
-        if (quiet || !report.changed)
-          return;
-        std::cout << fmt::format("mesh adapted: {} cells, estimated error of the stress {:.2g}, "
-                                 "changes of volume "
-                                 "{:.1e}, of the strain's integral {:.1e}{}\n",
-                                 report.cells, report.estimated_error, report.volume_change,
-                                 report.strain_change,
-                                 report.refused ? fmt::format(", {} families kept for the outline",
-                                                              report.refused)
-                                                : "")
-                  << std::flush;
-      }
-
-      void remeshed(const State                 &state,
-                    const std::string           &reason,
-                    const meshing::RemeshResult &result) const
-      {
-        if (!quiet)
-          std::cout << fmt::format("remeshing after step {} ({}): {}\n", state.step, reason,
-                                   meshing::describe(result))
-                    << std::flush;
-      }
-
-      void end(const State       &state,
-               const StepTimes   &sum,
-               const double       analyse,
-               const std::string &folder) const
-      {
-        if (quiet)
-          return;
-        const double total = timer.wall_time();
-        std::cout << fmt::format("{} steps in {} ({:.1f} ms per step): cells {:.0f} %, contact and "
-                                 "friction {:.0f} %, "
-                                 "factorisation {:.0f} %, solve {:.0f} %, analysis {:.3f} s\n",
-                                 state.step - start_step, duration(total),
-                                 1e3 * total / std::max(1u, state.step - start_step),
-                                 100 * (sum.assembly + sum.residual) / total,
-                                 100 * sum.contact / total, 100 * sum.factor / total,
-                                 100 * sum.solve / total, analyse)
-                  << "Results: " << folder << '\n'
-                  << std::flush;
-      }
-
-    private:
-      const scene::Scene &scene;
-      bool                quiet;
-      double              start_time = 0; ///< of this run, which may continue another [s]
-      unsigned int        start_step = 0;
-      dealii::Timer       timer;
-    };
-
-
     std::string versions(const RunOptions &options, const MPI_Comm communicator)
     {
       return fmt::format(
@@ -142,7 +28,7 @@ namespace axiforge::process
     }
 
 
-    std::string results_folder(const RunOptions &options, const scene::Scene &scene)
+    std::string results_folder(const RunOptions &options, const scene::SceneParameters &scene)
     {
       namespace fs = std::filesystem;
       if (!options.output_directory.empty())
@@ -166,8 +52,11 @@ namespace axiforge::process
                             const meshing::WorkpieceMesh &mesh,
                             State                        &state)
     {
-      CheckpointExtras extras = load_checkpoint(state, path);
-      check_same_scene(extras.parameters, parameters, path);
+      CheckpointExtras         extras = load_checkpoint(state, path);
+      std::vector<std::string> begun  = { extras.chain.present.name };
+      for (const OperationSummary &operation : extras.chain.finished)
+        begun.push_back(operation.name);
+      check_same_scene(extras.parameters, parameters, begun, path);
       const double volume = mesh.volume();
       if (std::abs(volume / state.initial_volume - 1) > 1e-6)
         throw InputError(fmt::format(
@@ -196,42 +85,124 @@ namespace axiforge::process
     }
 
 
-    /// A new mesh and with it a new solver, if the mesh could be made.
-    bool remesh(const scene::Scene                   &scene,
-                State                                &state,
-                std::unique_ptr<solvers::FlowSolver> &solver,
-                const Progress                       &progress,
-                const std::string                    &reason)
+    /// All entries of all operations, as sections if there are several.
+    std::string print_all(const std::vector<scene::SceneParameters> &operations)
     {
-      const meshing::RemeshResult result = meshing::remesh(scene, state);
-      progress.remeshed(state, reason, result);
-      if (result.done)
-        solver = std::make_unique<solvers::FlowSolver>(scene, state);
-      return result.done;
+      if (operations.front().operation.empty())
+        return operations.front().print();
+      std::string text;
+      for (const scene::SceneParameters &operation : operations)
+        text +=
+            "subsection Operation " + operation.operation + "\n" + operation.print() + "\nend\n\n";
+      return text;
     }
 
 
-    /// A step; where it fails, and remeshing is allowed, once more with a new mesh.
-    StepRecord step(const scene::Scene                   &scene,
-                    State                                &state,
-                    std::unique_ptr<solvers::FlowSolver> &solver,
-                    const Progress                       &progress,
-                    const StepRecord                     &last)
+    /// Everything that the operations of a run share.
+    struct Chain
     {
-      constexpr unsigned int repeats_before_remeshing = 2;
-      if (const std::string reason = meshing::reason_to_remesh(scene, state); !reason.empty())
-        remesh(scene, state, solver, progress, reason);
-      const double time_step = choose_step_size(scene, state, last);
-      if (scene.remeshing.enabled && state.step > 0 && state.remeshing.last_attempt < state.step)
-        try
-          {
-            return advance(scene, state, *solver, time_step, last, repeats_before_remeshing);
-          }
-        catch (const ComputationError &)
-          {
-            remesh(scene, state, solver, progress, "a step failed");
-          }
-      return advance(scene, state, *solver, time_step, last);
+      const RunOptions                          &options;
+      const std::vector<scene::SceneParameters> &operations;
+      std::string                                folder;
+      output::Provenance                         provenance;
+      bool                                       quiet;
+      Checkpointing                              checkpoints;
+      ChainProgress                              progress;
+
+      bool several() const
+      {
+        return !operations.front().operation.empty();
+      }
+
+      /// Folder of the results of an operation: 1_upset, 2_block, ... within that of the chain.
+      std::string folder_of(const unsigned int k) const
+      {
+        return several() ? fmt::format("{}/{}_{}", folder, k + 1, operations[k].operation) : folder;
+      }
+    };
+
+
+    /// What an earlier run has left in the folders would mix with this one.
+    void start_folders(const Chain &chain, const MPI_Comm communicator)
+    {
+      if (!chain.several())
+        return;
+      on_first_rank(communicator, [&] {
+        output::make_folder(chain.folder);
+        output::remove_results(chain.folder);
+        for (unsigned int k = 0; k < chain.operations.size(); ++k)
+          output::remove_results(chain.folder_of(k));
+        write_file_atomically(chain.folder + "/input.prm", chain.provenance.input);
+        write_file_atomically(chain.folder + "/parameters.prm", chain.provenance.parameters);
+        write_file_atomically(chain.folder + "/versions.txt", chain.provenance.versions);
+      });
+    }
+
+
+    /// One operation, from its first step or from a checkpoint.
+    void run_one(Chain              &chain,
+                 const unsigned int  k,
+                 const scene::Scene &scene,
+                 State              &state,
+                 CheckpointExtras   *resumed)
+    {
+      output::Provenance own = chain.provenance;
+      own.parameters         = chain.operations[k].print();
+      if (chain.several() && !chain.quiet)
+        std::cout << fmt::format("\nOperation {} of {}: {}\n", k + 1, chain.operations.size(),
+                                 chain.operations[k].operation);
+      warn(scene, chain.quiet);
+      output::Results results(scene, state, chain.folder_of(k), own,
+                              resumed ? &resumed->results : nullptr);
+      chain.checkpoints.more_follow = k + 1 < chain.operations.size();
+      run_operation(scene, state, results, chain.checkpoints,
+                    resumed ? resumed->record : StepRecord(), chain.progress, chain.quiet,
+                    chain.options.on_step);
+    }
+
+
+    /// The operations one after the other, the workpiece going through. Collective.
+    void run_chain(Chain                          &chain,
+                   const meshing::WorkpieceMesh   &mesh,
+                   State                          &state,
+                   std::optional<CheckpointExtras> resumed)
+    {
+      unsigned int first = 0;
+      if (resumed)
+        {
+          chain.progress = resumed->chain;
+          first          = chain.progress.finished.size();
+        }
+      else
+        start_folders(chain, state.communicator);
+      for (unsigned int k = first; k < chain.operations.size(); ++k)
+        {
+          const scene::SceneParameters &operation = chain.operations[k];
+          const bool                    resuming  = resumed && k == first;
+          scene::in_operation(operation.operation, [&] {
+            if (!resuming)
+              {
+                const bool as_meshed = k == 0 && !operation.placement.any();
+                if (!as_meshed)
+                  place_workpiece(operation, state);
+                chain.progress.outline =
+                    as_meshed ? meshing::outline_of(mesh) : meshing::outline_of(state);
+                chain.progress.present      = OperationSummary();
+                chain.progress.present.name = operation.operation;
+              }
+            const scene::Scene scene(operation, chain.progress.outline);
+            run_one(chain, k, scene, state, resuming ? &*resumed : nullptr);
+          });
+          chain.progress.finished.push_back(chain.progress.present);
+          if (chain.several())
+            {
+              on_first_rank(state.communicator, [&] {
+                write_summary(chain.folder, chain.operations, chain.progress.finished);
+              });
+              if (!chain.quiet && k + 1 == chain.operations.size())
+                std::cout << '\n' << summary_table(chain.progress.finished) << std::flush;
+            }
+        }
     }
   } // namespace
 
@@ -242,79 +213,49 @@ namespace axiforge::process
     const bool          quiet = options.quiet || !first;
     const ParameterFile file(options.parameter_file, options.overrides);
 
-    const scene::SceneParameters parameters(file);
+    const std::vector<scene::SceneParameters> operations = scene::read_operations(file);
     if (options.print_parameters)
       {
         if (first)
-          std::cout << parameters.print();
+          std::cout << print_all(operations);
         return;
       }
-    meshing::WorkpieceMesh mesh =
-        meshing::read_workpiece(parameters.workpiece, "Workpiece", parameters.directory);
+    const scene::SceneParameters &start = operations.front();
+    meshing::WorkpieceMesh        mesh =
+        meshing::read_workpiece(start.workpiece, "Workpiece", start.directory);
     meshing::share_from_first_rank(mesh, communicator);
-    const scene::Scene scene(parameters, meshing::outline_of(mesh));
-    if (scene.flow.linear_solver == "cholmod" &&
-        dealii::Utilities::MPI::n_mpi_processes(communicator) > 1)
-      throw InputError::entry(
-          "Flow solver/Linear solver", "cholmod", "CHOLMOD works on one rank only",
-          "'automatic' or 'mumps' on several ranks", "Or start the program without mpirun");
+    const unsigned int n_ranks = dealii::Utilities::MPI::n_mpi_processes(communicator);
+    for (const scene::SceneParameters &operation : operations)
+      if (operation.flow.linear_solver == "cholmod" && n_ranks > 1)
+        throw InputError::entry(
+            "Flow solver/Linear solver", "cholmod", "CHOLMOD works on one rank only",
+            "'automatic' or 'mumps' on several ranks", "Or start the program without mpirun");
+    if (!start.placement.any())
+      scene::in_operation(start.operation,
+                          [&] { const scene::Scene check(start, meshing::outline_of(mesh)); });
 
-    const std::string               folder = results_folder(options, scene);
+    const std::string               folder = results_folder(options, start);
+    const std::string               all    = print_all(operations);
     State                           state(communicator);
     std::optional<CheckpointExtras> resumed;
     if (options.resume)
-      resumed =
-          resume(find_checkpoint(options.resume_from, folder), parameters.print(), mesh, state);
+      resumed = resume(find_checkpoint(options.resume_from, folder), all, mesh, state);
     else
-      meshing::make_initial_state(mesh, parameters.workpiece.refinement_levels, state);
+      meshing::make_initial_state(mesh, start.workpiece.refinement_levels, state);
     if (options.validate)
       {
         if (first)
-          std::cout << fmt::format("{} is sound: {} cells, {} unknowns, {} tools.\n", file.path(),
+          std::cout << fmt::format("{} is sound: {} cells, {} unknowns, {}.\n", file.path(),
                                    state.tables.n_global_cells, state.n_unknowns(),
-                                   scene.tools.size());
+                                   start.operation.empty()
+                                       ? fmt::format("{} tools", start.tools.size())
+                                       : fmt::format("{} operations", operations.size()));
         return;
       }
-    warn(scene, quiet);
-
-    Progress        progress(scene, quiet);
-    output::Results results(
-        scene, state, folder,
-        { file.resolved_text(), parameters.print(), versions(options, communicator) },
-        resumed ? &resumed->results : nullptr);
-    auto          solver = std::make_unique<solvers::FlowSolver>(scene, state);
-    StepRecord    record = resumed ? resumed->record : StepRecord();
-    StepTimes     sum;
-    Checkpointing checkpoints(scene, folder, parameters.print());
-    progress.start(state);
-    try
-      {
-        if (!resumed)
-          adapt_at_start(scene, state, solver, choose_step_size(scene, state, record));
-        while (state.time < scene.end_time() * (1 - 1e-12) && state.step < scene.time.most_steps)
-          {
-            record                       = step(scene, state, solver, progress, record);
-            record.remeshings            = state.remeshing.count;
-            record.remeshing_volume_jump = state.remeshing.volume_jump;
-            record.remeshing_strain_jump = state.remeshing.strain_jump;
-            results.write(state, record);
-            progress.step(record);
-            sum.add(record.times);
-            if (options.on_step)
-              options.on_step(scene, record);
-            progress.mesh(adapt_if_due(scene, state, solver));
-            if (checkpoints.after_step(state, record, results) && !quiet)
-              std::cout << "checkpoint after step " << state.step << std::endl;
-          }
-        checkpoints.at_end(state, record, results);
-      }
-    catch (const ComputationError &error)
-      {
-        const std::string advice = checkpoints.rescue(state, record, results);
-        results.write_fields(state); // what there is stays, up to the last good step
-        throw ComputationError(error.what() + advice);
-      }
-    results.write_fields(state);
-    progress.end(state, sum, solver->linear_system().analyse_seconds, folder);
+    Chain chain{ options, operations,
+                 folder,  { file.resolved_text(), all, versions(options, communicator) },
+                 quiet,   { folder, all },
+                 {} };
+    run_chain(chain, mesh, state, std::move(resumed));
   }
 } // namespace axiforge::process

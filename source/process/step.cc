@@ -2,7 +2,9 @@
 #include <deal.II/base/mpi.h>
 
 #include <axiforge/base/errors.h>
+#include <axiforge/process/end_condition.h>
 #include <axiforge/process/step.h>
+#include <axiforge/state/fill.h>
 
 namespace axiforge::process
 {
@@ -12,6 +14,9 @@ namespace axiforge::process
   {
     /// A step is at most so many times as long as the one before.
     constexpr double largest_growth = 1.5;
+
+    /// A step that goes beyond the end of the operation is cut so many times at most.
+    constexpr unsigned int most_cuts = 12;
 
     /// Time in which the nodes of some cell move against each other by its own size [s].
     double shortest_distortion_time(const State &state)
@@ -128,7 +133,7 @@ namespace axiforge::process
     // After steps that had to be shortened the length comes back by and by.
     double time_step =
         last.time_step > 0 ? std::min(wanted, largest_growth * last.time_step) : wanted;
-    unsigned int repeats = 0, iterations = 0;
+    unsigned int repeats = 0, iterations = 0, cuts = 0;
     StepTimes    times;
     const double shortest = std::min(wanted, scene.time.smallest_step * plain_step(scene, state));
     for (;;)
@@ -143,14 +148,27 @@ namespace axiforge::process
             for (std::size_t i = 0; i < state.position.locally_owned_size(); ++i)
               state.position.local_element(i) += time_step * result.velocity.local_element(i);
             state.position.update_ghost_values();
-            const Measures size = measure(state);
-            state.position      = before;
+            const Measures size   = measure(state);
+            const double   radius = scene.process.fill_radius;
+            const double   fill =
+                radius > 0 ? fill_fraction(scene, state, radius, state.time + time_step) : 0;
+            state.position = before;
             state.position.update_ghost_values();
             if (size.smallest_jacobian > 0)
               {
                 StepRecord record = result.record;
+                record.step       = state.step + 1;
+                record.height     = size.highest - size.lowest;
+                record.fill       = fill;
+                if (const double passed = passed_end(scene, record);
+                    passed > end_tolerance && cuts++ < most_cuts)
+                  {
+                    // Beyond the end of the operation: the secant's rule from the step before.
+                    const double before_it = state.step > 0 ? passed_end(scene, last) : -1;
+                    time_step *= std::clamp(-before_it / (passed - before_it), 0.05, 0.95);
+                    continue;
+                  }
                 accept(state, result, time_step);
-                record.step                     = state.step;
                 record.time                     = state.time;
                 record.time_step                = time_step;
                 record.stroke                   = scene.stroke(state.time);

@@ -23,6 +23,33 @@ namespace axiforge::scene
         "End time", end_time,
         "The run ends at this time [s]. 0: not used. With both, the earlier one counts.",
         Patterns::Double(0));
+    prm.add_parameter(
+        "End force", end_force,
+        "The run ends when the force of the driving tool reaches this [N], to 0.1 %: steps are cut "
+        "short to meet it. Stroke or time stay the most that it may take. 0: not used.",
+        Patterns::Double(0));
+    prm.add_parameter(
+        "End height", end_height,
+        "The run ends when the workpiece (of a half model: its half) is no higher than "
+        "this [mm]. Stroke or time stay the most that it may take. 0: not used.",
+        Patterns::Double(0));
+    prm.add_parameter(
+        "End fill", end_fill,
+        "The run ends when this share of the cavity inside \"Fill radius\" is filled, "
+        "for instance 0.995. Stroke or time stay the most that it may take. 0: not used.",
+        Patterns::Double(0, 1));
+    prm.add_parameter(
+        "Fill radius", fill_radius,
+        "Radius R [mm] up to which the cavity between the tools counts, as a rule the inner edge "
+        "of "
+        "the flash land. history.csv gets a column fill: the volume of the workpiece at r < R over "
+        "that between the tools, as far as they stand now. 0: not computed.",
+        Patterns::Double(0));
+    prm.add_parameter(
+        "Dwell", dwell,
+        "Time [s] that passes after this operation, at rest or on the way to the next. "
+        "Without heat nothing else happens in it.",
+        Patterns::Double(0));
   }
 
 
@@ -228,8 +255,27 @@ namespace axiforge::scene
   }
 
 
+  void PlacementParameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter("Flip", flip,
+                      "Turn the workpiece over first: z changes its sign about the middle of its "
+                      "height. Its strains go with it.");
+    prm.add_parameter("Move", move,
+                      "Move it along z by this much [mm] then; with \"Rest on\" after it rests.");
+    prm.add_parameter("Rest on", rest_on,
+                      "Name of a tool: the workpiece is put above it, then lowered until it "
+                      "touches it. Empty: it "
+                      "stays where it is.");
+  }
+
+
   void ToolParameters::declare(ParameterHandler &prm)
   {
+    prm.add_parameter(
+        "Start", start,
+        "'as drawn': where the geometry file has it. 'touching': it comes along its direction of "
+        "motion until it touches the workpiece, and starts there; the stroke counts from there.",
+        Patterns::Selection("as drawn|touching"));
     geometry.declare_profile(prm);
     prm.enter_subsection("Motion");
     motion.declare(prm);
@@ -291,6 +337,14 @@ namespace axiforge::scene
         "Boundaries", boundary_names,
         "Names of physical curves of the workpiece with a condition of their own; each "
         "has its section 'Boundary NAME'. Axis and symmetry need none.");
+    prm.add_parameter(
+        "Operations", operation_names,
+        "Names of operations that follow each other, separated by commas; each has its section "
+        "'Operation NAME' with any sections and entries of a scene but the workpiece's: what "
+        "stands in it goes over what stands outside. Empty: the scene is one operation.");
+    prm.enter_subsection("Placement");
+    placement.declare(prm);
+    prm.leave_subsection();
     prm.enter_subsection("Workpiece");
     workpiece.declare_workpiece(prm);
     prm.leave_subsection();
@@ -368,5 +422,79 @@ namespace axiforge::scene
     std::ostringstream out;
     handler->print_parameters(out, ParameterHandler::PRM | ParameterHandler::KeepDeclarationOrder);
     return out.str();
+  }
+
+
+  std::vector<SceneParameters> read_operations(const ParameterFile &file)
+  {
+    std::string      list;
+    ParameterHandler names;
+    names.add_parameter("Operations", list);
+    file.parse(names, true);
+    const std::vector<std::string> operations = split_names("Operations", list);
+    const std::vector<std::string> sections   = file.sections_of_family("Operation");
+    for (const std::string &section : sections)
+      if (std::find(operations.begin(), operations.end(), section) == operations.end())
+        throw InputError::entry("Operations", list,
+                                "there is a section \"Operation " + section +
+                                    "\", and the list does not have it",
+                                "the names of all operations in their order",
+                                "Add it to the list, or take the section out");
+    std::vector<SceneParameters> result;
+    if (operations.empty())
+      result.emplace_back(file);
+    for (const std::string &operation : operations)
+      {
+        if (std::find(sections.begin(), sections.end(), operation) == sections.end())
+          throw InputError::entry("Operations", list,
+                                  "there is no section \"Operation " + operation + "\"",
+                                  "names of sections", "Write it, or take the name out");
+        in_operation(operation, [&] {
+          result.emplace_back(file.seen_by("Operation", operation));
+          result.back().operation = operation;
+          result.back().check_files();
+        });
+        // The workpiece is made once.
+        const GeometryParameters &own = result.back().workpiece, &first = result[0].workpiece;
+        if (own.file != first.file || own.parameters != first.parameters ||
+            own.physical_group != first.physical_group || own.element_size != first.element_size ||
+            own.refinement_levels != first.refinement_levels)
+          throw InputError::entry("Operation " + operation + "/Workpiece/Geometry file", own.file,
+                                  "the workpiece of an operation is what the one before has made",
+                                  "a section Workpiece outside of the operations only",
+                                  "Take it out of the operation");
+      }
+    return result;
+  }
+
+
+  void in_operation(const std::string &name, const std::function<void()> &action)
+  {
+    if (name.empty())
+      return action();
+    try
+      {
+        action();
+      }
+    catch (const InputError &error)
+      {
+        throw InputError("Operation \"" + name + "\": " + error.what());
+      }
+    catch (const ComputationError &error)
+      {
+        throw ComputationError("Operation \"" + name + "\": " + error.what());
+      }
+  }
+
+
+  void SceneParameters::check_files() const
+  {
+    for (const ToolParameters &tool : tools)
+      {
+        const std::string section = "Tool " + tool.name;
+        tools::read_profile(tool.geometry, section, directory);
+        tools::Motion(tool.motion, section + "/Motion", directory);
+      }
+    laws::Material(material, "Material", directory);
   }
 } // namespace axiforge::scene

@@ -7,6 +7,7 @@
 
 #include <axiforge/base/errors.h>
 #include <axiforge/scene/scene.h>
+#include <axiforge/tools/positioning.h>
 
 namespace axiforge::scene
 {
@@ -98,6 +99,10 @@ namespace axiforge::scene
     }
 
 
+    /// A tool that is brought to the workpiece stops short of it by this share of its size at most.
+    constexpr double touching = 1e-9;
+
+
     std::string list(const std::vector<std::string> &names)
     {
       std::string text;
@@ -118,7 +123,23 @@ namespace axiforge::scene
                  tools::Motion(parameters.motion, section + "/Motion", directory),
                  laws::Friction(parameters.friction, section + "/Friction", characteristic_speed,
                                 layer_length) };
-      tool.profile.orient(outline.boundary_points);
+      if (parameters.start == "touching")
+        {
+          const double  late = std::isfinite(tool.motion.end_time()) ? tool.motion.end_time() : 1;
+          const Vector2 way  = tool.motion.velocity(0).norm() > 0 ? tool.motion.velocity(0)
+                                                                  : tool.motion.displacement(late);
+          if (!(way.norm() > 0))
+            throw InputError::entry(
+                section + "/Start", parameters.start,
+                "the tool has no direction of motion to come from",
+                "'touching' for a tool that moves",
+                "Set \"Start = as drawn\"; \"Placement/Rest on\" puts the workpiece "
+                "on a tool that rests");
+          tools::bring_to_contact(tool.profile, outline.boundary_points, way / way.norm(),
+                                  touching * (outline.upper - outline.lower).norm(), section);
+        }
+      else
+        tool.profile.orient(outline.boundary_points);
 
       // Which side is the tool's is a guess if the workpiece lies on both: say how far on each.
       const double       size = (outline.upper - outline.lower).norm();
@@ -144,6 +165,22 @@ namespace axiforge::scene
             "a tool that touches the workpiece or stands off",
             "Move the tool's geometry back, or the workpiece");
       return tool;
+    }
+  } // namespace
+
+
+  namespace
+  {
+    void check_end_conditions(const ProcessParameters &process, const bool tool_moves)
+    {
+      if (process.end_force > 0 && !tool_moves)
+        throw InputError::entry("Process/End force", fmt::format("{}", process.end_force),
+                                "no tool moves, so there is no driving tool's force", "0");
+      if (process.end_fill > 0 && process.fill_radius == 0)
+        throw InputError::entry("Process/End fill", fmt::format("{}", process.end_fill),
+                                "it needs the radius up to which the cavity counts",
+                                "a positive \"Process/Fill radius\" [mm]",
+                                "Set it to the inner radius of the flash land");
     }
   } // namespace
 
@@ -281,7 +318,10 @@ namespace axiforge::scene
     if (process.end_stroke == 0 && process.end_time == 0)
       throw InputError::entry("Process/End stroke", "0", "the run has no end",
                               "a positive end stroke [mm] or end time [s]",
-                              "Set \"Process/End stroke\" or \"Process/End time\"");
+                              "Set \"Process/End stroke\" or \"Process/End time\"; with an end by "
+                              "force, height or fill as the most that it may take");
+
+    check_end_conditions(process, driving_tool != no_tool);
 
     if (process.end_time > 0)
       end_time_ = process.end_time;

@@ -165,7 +165,14 @@ namespace axiforge::study
     const bool first = dealii::Utilities::MPI::this_mpi_process(communicator) == 0;
     const bool quiet = options.quiet || !first;
 
-    const ParameterFile          file(options.parameter_file, options.overrides);
+    const ParameterFile file(options.parameter_file, options.overrides);
+    if (const auto operations = file.sections_of_family("Operation"); !operations.empty())
+      throw InputError(
+          "A study repeats a scene of one operation, and this one has the sections \"Operation " +
+          operations.front() +
+          "\" and so on. Make a scene of the operation that matters, or run the chain several "
+          "times "
+          "with --set.");
     const scene::SceneParameters parameters(file);
     Findings                     study;
     study.plan = make_plan(parameters);

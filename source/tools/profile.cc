@@ -362,6 +362,14 @@ namespace axiforge::tools
     complete();
   }
 
+  void Profile::move(const Vector2 &way)
+  {
+    for (Chain &chain : chains)
+      for (Segment &segment : chain.segments)
+        segment = segment.moved(way);
+    complete();
+  }
+
   std::vector<std::vector<Point>> Profile::sample(const double chord_tolerance) const
   {
     std::vector<std::vector<Point>> polylines;

@@ -143,6 +143,17 @@ namespace axiforge::tools
       }
   }
 
+  Segment Segment::moved(const Vector2 &way) const
+  {
+    Segment segment = *this;
+    segment.first += way;
+    segment.last += way;
+    segment.centre += way;
+    segment.bounding_box = Box();
+    segment.complete();
+    return segment;
+  }
+
   Segment Segment::reversed() const
   {
     Segment segment = *this;

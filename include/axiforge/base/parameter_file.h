@@ -63,6 +63,18 @@ namespace axiforge
      */
     std::string resolved_text() const;
 
+    /// Names of the sections at the top level that begin with the word @p family and a blank,
+    /// without these, each once, in the order of the file: "upset" of "Operation upset".
+    std::vector<std::string> sections_of_family(const std::string &family) const;
+
+    /**
+     * The file as one member of a family of sections sees it: everything that is in no section of
+     * the family, then what stands in "FAMILY MEMBER", as if it stood at the top level, and last
+     * the overrides of the command line for both. So the member's own entries win over the common
+     * ones.
+     */
+    ParameterFile seen_by(const std::string &family, const std::string &member) const;
+
   private:
     enum class Keyword
     {
@@ -90,5 +102,6 @@ namespace axiforge
     std::string            path_;
     std::string            text_;
     std::vector<Statement> statements_;
+    std::size_t            n_of_file_ = 0; ///< statements; those behind them are overrides
   };
 } // namespace axiforge

@@ -12,6 +12,10 @@ namespace axiforge::meshing
   /// What the scene has to know of the workpiece.
   scene::WorkpieceOutline outline_of(const WorkpieceMesh &mesh);
 
+  /// The same of a workpiece that has been forged; the points in the order of r and z, whatever the
+  /// number of ranks. Collective.
+  scene::WorkpieceOutline outline_of(const State &state);
+
   /**
    * Fills an empty state with the workpiece at the start of the run: mesh, refined so many times,
    * its Q2 geometry, and everything else zero. Collective.

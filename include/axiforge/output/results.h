@@ -71,6 +71,13 @@ namespace axiforge::output
     ResultsProgress        done;    ///< rows and files of the tools: first rank only
   };
 
+  /// Makes the folder if it is not there. First rank only. @throws InputError
+  void make_folder(const std::string &folder);
+
+  /// Takes away what a run writes to its folder, as far as it is there; no other files. First rank
+  /// only.
+  void remove_results(const std::string &folder);
+
   /// Column names of history.csv.
   std::vector<std::string> history_columns(const scene::Scene &scene);
 

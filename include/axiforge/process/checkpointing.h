@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <deal.II/base/timer.h>
 
@@ -23,38 +24,46 @@ namespace axiforge::process
   class Checkpointing
   {
   public:
-    /// @param parameters text of all entries in effect
-    Checkpointing(const scene::Scene &scene,
-                  const std::string  &folder,
-                  const std::string  &parameters);
+    /// @param folder of the results, @param parameters text of all entries in effect
+    Checkpointing(const std::string &folder, const std::string &parameters);
     Checkpointing(const Checkpointing &) = delete;
     ~Checkpointing();
+
+    /// From now on checkpoints are of this operation. The arguments have to stay.
+    void
+    enter(const scene::Scene &scene, const ChainProgress &chain, const output::Results &results);
 
     /**
      * After an accepted step whose row is written: writes if it is due. Collective.
      * @return whether it has written because of a signal
      * @throws ComputationError if a signal asks the run to stop
      */
-    bool after_step(const State &state, const StepRecord &record, const output::Results &results);
+    bool after_step(const State &state, const StepRecord &record);
 
-    /// At the end of the run, if the scene asks for checkpoints. Collective.
-    void at_end(const State &state, const StepRecord &record, const output::Results &results);
+    /// At the end of an operation, if the scene asks for checkpoints or another one follows.
+    /// Collective.
+    void at_end(const State &state, const StepRecord &record);
 
     /**
      * When the run cannot go on: writes the last good state, to be called before other results are
      * written. Throws nothing. Collective.
      * @return a sentence for the message that says how to continue; empty if there was no step
      */
-    std::string
-    rescue(const State &state, const StepRecord &record, const output::Results &results) noexcept;
+    std::string rescue(const State &state, const StepRecord &record) noexcept;
+
+    /// Whether operations follow the present one; set by who runs the chain.
+    bool more_follow = false;
 
   private:
-    void write(const State &state, const StepRecord &record, const output::Results &results);
+    void write(const State &state, const StepRecord &record);
 
-    const scene::Scene &scene;
-    std::string         folder, parameters;
-    dealii::Timer       since_last;
-    unsigned int        last_step = static_cast<unsigned int>(-1); ///< of the last checkpoint
+    std::string            folder, parameters;
+    const scene::Scene    *scene   = nullptr;
+    const ChainProgress   *chain   = nullptr;
+    const output::Results *results = nullptr;
+    dealii::Timer          since_last;
+    unsigned int           last_step = static_cast<unsigned int>(-1); ///< of the last checkpoint
+    std::string            last_kept; ///< what the last checkpoint is of, in words
   };
 
   /**
@@ -68,9 +77,14 @@ namespace axiforge::process
 
   /**
    * Checks that a checkpoint belongs to a scene: all entries are the same but for the end of the
-   * run, time stepping, flow solver, outputs and checkpoints.
+   * run, time stepping, flow solver, outputs and checkpoints. Operations that have not begun may
+   * differ altogether.
    * @param before, now texts of all entries in effect
+   * @param begun names of the operations that have begun
    * @throws InputError that names the first entry that differs
    */
-  void check_same_scene(const std::string &before, const std::string &now, const std::string &path);
+  void check_same_scene(const std::string              &before,
+                        const std::string              &now,
+                        const std::vector<std::string> &begun,
+                        const std::string              &path);
 } // namespace axiforge::process

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
 #include <deal.II/base/mpi.h>
 
-#include <axiforge/scene/scene.h>
-#include <axiforge/state/step_record.h>
+#include <axiforge/process/operation.h>
 
 namespace axiforge::process
 {
@@ -25,12 +23,11 @@ namespace axiforge::process
     bool                     quiet            = false; ///< no progress lines
     std::string              version, revision, command_line;
 
-    /// Called on all ranks after every accepted step, for who repeats runs and compares them.
-    std::function<void(const scene::Scene &, const StepRecord &)> on_step;
+    OnStep on_step;
   };
 
   /**
-   * Reads the scene and runs it: the loop over steps. Collective.
+   * Reads the scene and runs it: its operations one after the other. Collective.
    * @throws InputError, ComputationError
    */
   void run(const RunOptions &options, MPI_Comm communicator);

@@ -22,12 +22,17 @@
 
 namespace axiforge::scene
 {
-  /// `subsection Process`: what the run ends with.
+  /// `subsection Process`: what the run, or the operation, ends with.
   struct ProcessParameters
   {
     std::string driving_tool;
-    double      end_stroke = 0;
-    double      end_time   = 0;
+    double      end_stroke  = 0;
+    double      end_time    = 0;
+    double      end_force   = 0; ///< [N]
+    double      end_height  = 0; ///< [mm]
+    double      end_fill    = 0; ///< share, see fill_fraction()
+    double      fill_radius = 0; ///< [mm]; 0: the fill is not computed
+    double      dwell       = 0; ///< [s]
 
     void declare(dealii::ParameterHandler &prm);
   };
@@ -139,10 +144,26 @@ namespace axiforge::scene
     void declare(dealii::ParameterHandler &prm);
   };
 
+  /// `subsection Placement`: what is done to the workpiece before the first step.
+  struct PlacementParameters
+  {
+    bool        flip = false;
+    double      move = 0; ///< along z [mm]
+    std::string rest_on;  ///< name of a tool
+
+    bool any() const
+    {
+      return flip || move != 0 || !rest_on.empty();
+    }
+
+    void declare(dealii::ParameterHandler &prm);
+  };
+
   /// `subsection Tool NAME`
   struct ToolParameters
   {
     std::string              name;
+    std::string              start = "as drawn";
     GeometryParameters       geometry;
     tools::MotionParameters  motion;
     laws::FrictionParameters friction;
@@ -161,14 +182,16 @@ namespace axiforge::scene
   };
 
   /**
-   * Everything a .prm says, as read: values within their patterns, but not yet checked against each
-   * other or against the mesh.
+   * Everything a .prm says of one operation (the only one, in most scenes), as read: values within
+   * their patterns, but not yet checked against each other or against the mesh.
    */
   struct SceneParameters
   {
     explicit SceneParameters(const ParameterFile &file);
 
     std::string                     title;
+    std::string                     operation; ///< name of this operation; empty: there are none
+    PlacementParameters             placement;
     GeometryParameters              workpiece;
     laws::MaterialParameters        material;
     std::vector<ToolParameters>     tools;
@@ -186,12 +209,28 @@ namespace axiforge::scene
     /// All entries with their values in effect and their texts, in .prm form.
     std::string print() const;
 
+    /// Reads the files that tools and material name. @throws InputError
+    void check_files() const;
+
   private:
     void declare(dealii::ParameterHandler &prm);
 
-    std::string                               tool_names, boundary_names;
+    std::string                               tool_names, boundary_names, operation_names;
     std::shared_ptr<dealii::ParameterHandler> handler;
   };
+
+  /**
+   * The parameters of a scene's operations, in their order: of each `subsection Operation NAME`
+   * named in the entry `Operations` what stands in it over what stands outside of these sections.
+   * One element, without a name, if the scene has no operations. Files that the sections name
+   * (profiles, tables) are read, so that a mistake in the last operation does not wait until then.
+   * @throws InputError
+   */
+  std::vector<SceneParameters> read_operations(const ParameterFile &file);
+
+  /// Does something and puts the name of the operation before the message of an InputError or
+  /// ComputationError that comes out; with an empty name nothing is added.
+  void in_operation(const std::string &name, const std::function<void()> &action);
 
   /// What the scene needs to know of the meshed workpiece to check and complete itself.
   struct WorkpieceOutline
@@ -257,7 +296,7 @@ namespace axiforge::scene
     /// Travel of the driving tool [mm] at a time [s].
     double stroke(double time) const;
 
-    /// Time [s] at which the run ends.
+    /// Time [s] at which the run ends, if force, height or fill do not end it before.
     double end_time() const
     {
       return end_time_;

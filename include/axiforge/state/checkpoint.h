@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include <axiforge/scene/scene.h>
+#include <axiforge/state/operation_summary.h>
 #include <axiforge/state/state.h>
 #include <axiforge/state/step_record.h>
 
@@ -22,12 +24,21 @@ namespace axiforge
     double                                      wall_seconds       = 0; ///< of all steps so far
   };
 
+  /// How far a chain of operations has come.
+  struct ChainProgress
+  {
+    scene::WorkpieceOutline       outline; ///< at the start of the present operation
+    std::vector<OperationSummary> finished;
+    OperationSummary              present; ///< of the steps so far
+  };
+
   /// What a checkpoint holds beside the state.
   struct CheckpointExtras
   {
     std::string     parameters; ///< all entries in effect, as in parameters.prm
     StepRecord      record;     ///< of the last step: the length of the next one depends on it
     ResultsProgress results;
+    ChainProgress   chain;
   };
 
   /**

@@ -65,6 +65,8 @@ namespace axiforge
     double smallest_jacobian        = 0; ///< worst of the cells, 1: undistorted, at Gauss points
     double smallest_vertex_jacobian = 0; ///< at vertices: negative where an edge folds on to a tool
     double largest_radius           = 0; ///< of the free and touching surface [mm]
+    double height                   = 0; ///< of the workpiece [mm]
+    double fill                     = 0; ///< share of the cavity, if it is asked for
 
     unsigned int cells = 0, unknowns = 0, iterations = 0, set_changes = 0, repeats = 0;
     double       residual = 0, divergence = 0;

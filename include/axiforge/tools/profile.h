@@ -75,6 +75,9 @@ namespace axiforge::tools
      */
     void orient(const std::vector<Point> &workpiece_points);
 
+    /// Put the whole profile elsewhere; the workpiece's side stays the same side.
+    void move(const Vector2 &way);
+
     /**
      * Contacts of x [mm, in the tool's own coordinates]: those with a gap of at most @p reach [mm],
      * penetrating points whatever their depth. Returns their number:

@@ -59,6 +59,9 @@ namespace axiforge::tools
     /// The same points run through the other way.
     Segment reversed() const;
 
+    /// The same segment elsewhere.
+    Segment moved(const Vector2 &way) const;
+
     Point begin() const;
     Point end() const;
 

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <vector>
+
+#include <axiforge/tools/profile.h>
+
+namespace axiforge::tools
+{
+  /**
+   * How far [mm] an oriented profile, clear of all points, can travel along a unit direction until
+   * it touches the first of them: to within @p tolerance [mm] short of it, never beyond.
+   * @return infinity if it passes all of them
+   *
+   * Conservative advancement (B. Mirtich, 1996): the smallest gap is a way that is safe whatever
+   * the shapes, and is gone again and again. With a flat tool the first step is exact.
+   */
+  double travel_to_contact(const Profile            &profile,
+                           const std::vector<Point> &points,
+                           const Vector2            &direction,
+                           double                    tolerance);
+
+  /**
+   * Moves a profile back against a unit direction until it is wholly behind all points, chooses its
+   * side from there and lets it come forward until it touches, see travel_to_contact().
+   * @return the displacement from where the profile was drawn [mm]
+   * @throws InputError if it touches none of the points, with @p name
+   */
+  Vector2 bring_to_contact(Profile                  &profile,
+                           const std::vector<Point> &points,
+                           const Vector2            &direction,
+                           double                    tolerance,
+                           const std::string        &name);
+} // namespace axiforge::tools

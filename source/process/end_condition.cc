@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <algorithm>
+
+#include <axiforge/process/end_condition.h>
+
+namespace axiforge::process
+{
+  namespace
+  {
+    struct Limits
+    {
+      double force, height, fill; ///< passed by so much of the limit; -1: no limit
+    };
+
+
+    Limits passed(const scene::Scene &scene, const StepRecord &record)
+    {
+      const scene::ProcessParameters &end = scene.process;
+      Limits                          result{ -1, -1, -1 };
+      if (record.step == 0)
+        return result;
+      if (end.end_force > 0)
+        result.force = record.tools[scene.driving_tool].force / end.end_force - 1;
+      if (end.end_height > 0)
+        result.height = 1 - record.height / end.end_height;
+      if (end.end_fill > 0)
+        result.fill = record.fill / end.end_fill - 1;
+      return result;
+    }
+  } // namespace
+
+
+  double passed_end(const scene::Scene &scene, const StepRecord &record)
+  {
+    const Limits limits = passed(scene, record);
+    return std::max({ limits.force, limits.height, limits.fill });
+  }
+
+
+  std::string ended_by(const scene::Scene &scene, const StepRecord &record)
+  {
+    const Limits limits = passed(scene, record);
+    if (limits.force >= -end_tolerance)
+      return "force";
+    if (limits.height >= -end_tolerance)
+      return "height";
+    if (limits.fill >= -end_tolerance)
+      return "fill";
+    if (record.time >= scene.end_time() * (1 - 1e-12))
+      return scene.process.end_stroke > 0 &&
+                     record.stroke >= scene.process.end_stroke * (1 - 1e-9)
+                 ? "stroke"
+                 : "time";
+    if (record.step >= scene.time.most_steps)
+      return "steps";
+    return "";
+  }
+} // namespace axiforge::process

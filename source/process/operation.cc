@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <memory>
+
+#include <axiforge/base/errors.h>
+#include <axiforge/meshing/remesh.h>
+#include <axiforge/process/end_condition.h>
+#include <axiforge/process/mesh_change.h>
+#include <axiforge/process/operation.h>
+#include <axiforge/process/progress.h>
+#include <axiforge/process/step.h>
+
+namespace axiforge::process
+{
+  namespace
+  {
+    /// A new mesh and with it a new solver, if the mesh could be made.
+    bool remesh(const scene::Scene                   &scene,
+                State                                &state,
+                std::unique_ptr<solvers::FlowSolver> &solver,
+                const Progress                       &progress,
+                const std::string                    &reason)
+    {
+      const meshing::RemeshResult result = meshing::remesh(scene, state);
+      progress.remeshed(state, reason, result);
+      if (result.done)
+        solver = std::make_unique<solvers::FlowSolver>(scene, state);
+      return result.done;
+    }
+
+
+    /// A step; where it fails, and remeshing is allowed, once more with a new mesh.
+    StepRecord step(const scene::Scene                   &scene,
+                    State                                &state,
+                    std::unique_ptr<solvers::FlowSolver> &solver,
+                    const Progress                       &progress,
+                    const StepRecord                     &last)
+    {
+      constexpr unsigned int repeats_before_remeshing = 2;
+      if (const std::string reason = meshing::reason_to_remesh(scene, state); !reason.empty())
+        remesh(scene, state, solver, progress, reason);
+      const double time_step = choose_step_size(scene, state, last);
+      if (scene.remeshing.enabled && state.step > 0 && state.remeshing.last_attempt < state.step)
+        try
+          {
+            return advance(scene, state, *solver, time_step, last, repeats_before_remeshing);
+          }
+        catch (const ComputationError &)
+          {
+            remesh(scene, state, solver, progress, "a step failed");
+          }
+      return advance(scene, state, *solver, time_step, last);
+    }
+
+
+    /**
+     * Axial sum of the forces of all tools over the largest of them: 0 in balance, doc/theory.md
+     * (36). Where something else holds the workpiece (a symmetry line, a boundary) it is 0.
+     */
+    double imbalance(const scene::Scene &scene, const State &state, const StepRecord &record)
+    {
+      if (scene.tools.size() < 2 || !scene.boundaries.empty() ||
+          state.boundary_ids.count("symmetry"))
+        return 0;
+      double sum = 0, largest = 0;
+      for (unsigned int i = 0; i < scene.tools.size(); ++i)
+        {
+          // A record's force is positive against the motion, of a tool at rest upwards.
+          const double middle = record.time - 0.5 * record.time_step;
+          const double sign   = scene.tools[i].motion.velocity(middle)[1] < 0 ? -1 : 1;
+          sum += sign * record.tools[i].force;
+          largest = std::max(largest, std::abs(record.tools[i].force));
+        }
+      return largest > 0 ? std::abs(sum) / largest : 0;
+    }
+
+
+    void add_step(const scene::Scene &scene,
+                  const State        &state,
+                  const StepRecord   &record,
+                  OperationSummary   &summary)
+    {
+      summary.steps  = record.step;
+      summary.time   = record.time;
+      summary.stroke = record.stroke;
+      summary.height = record.height;
+      summary.fill   = record.fill;
+      if (scene.driving_tool != no_tool)
+        summary.force = record.tools[scene.driving_tool].force;
+      summary.largest_force = std::max(summary.largest_force, summary.force);
+      summary.work += record.time_step * (record.power_tools + record.power_boundaries);
+      summary.imbalance      = std::max(summary.imbalance, imbalance(scene, state, record));
+      summary.volume_change  = record.relative_volume_change;
+      summary.largest_strain = record.largest_strain;
+      summary.largest_radius = record.largest_radius;
+      summary.cells          = record.cells;
+      summary.wall_seconds += record.times.total;
+    }
+  } // namespace
+
+
+  void run_operation(const scene::Scene &scene,
+                     State              &state,
+                     output::Results    &results,
+                     Checkpointing      &checkpoints,
+                     StepRecord          record,
+                     ChainProgress      &chain,
+                     const bool          quiet,
+                     const OnStep       &on_step)
+  {
+    const unsigned int remeshings_before = state.remeshing.count - chain.present.remeshings;
+    auto               solver            = std::make_unique<solvers::FlowSolver>(scene, state);
+    StepTimes          sum;
+    Progress           progress(scene, quiet);
+    progress.start(state);
+    checkpoints.enter(scene, chain, results);
+    try
+      {
+        if (state.step == 0)
+          adapt_at_start(scene, state, solver, choose_step_size(scene, state, record));
+        while (ended_by(scene, record).empty())
+          {
+            record                       = step(scene, state, solver, progress, record);
+            record.remeshings            = state.remeshing.count;
+            record.remeshing_volume_jump = state.remeshing.volume_jump;
+            record.remeshing_strain_jump = state.remeshing.strain_jump;
+            add_step(scene, state, record, chain.present);
+            chain.present.remeshings = state.remeshing.count - remeshings_before;
+            results.write(state, record);
+            progress.step(record);
+            sum.add(record.times);
+            if (on_step)
+              on_step(scene, record);
+            progress.mesh(adapt_if_due(scene, state, solver));
+            if (checkpoints.after_step(state, record))
+              progress.say(fmt::format("checkpoint after step {}", state.step));
+          }
+        chain.present.ended_by = ended_by(scene, record);
+        checkpoints.at_end(state, record);
+      }
+    catch (const ComputationError &error)
+      {
+        const std::string advice = checkpoints.rescue(state, record);
+        results.write_fields(state); // what there is stays, up to the last good step
+        throw ComputationError(error.what() + advice);
+      }
+    results.write_fields(state);
+    progress.end(state, sum, solver->linear_system().analyse_seconds, results.directory());
+  }
+} // namespace axiforge::process

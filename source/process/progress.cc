@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <iostream>
+
+#include <fmt/format.h>
+
+#include <axiforge/process/progress.h>
+
+namespace axiforge::process
+{
+  namespace
+  {
+    std::string duration(const double seconds)
+    {
+      const int whole = static_cast<int>(std::lround(seconds));
+      return seconds < 60     ? fmt::format("{:.1f} s", seconds)
+             : seconds < 3600 ? fmt::format("{}:{:02} min", whole / 60, whole % 60)
+                              : fmt::format("{}:{:02} h", whole / 3600, whole / 60 % 60);
+    }
+  } // namespace
+
+
+  Progress::Progress(const scene::Scene &scene, const bool quiet)
+      : scene(scene)
+      , quiet(quiet)
+  {
+  }
+
+
+  void Progress::start(const State &state)
+  {
+    start_time = state.time;
+    start_step = state.step;
+    if (quiet)
+      return;
+    if (state.step > 0)
+      std::cout << fmt::format("resumed after step {}, time {:.6g} s\n", state.step,
+                               state.time);
+    if (!scene.title.empty())
+      std::cout << scene.title << '\n';
+    std::cout << fmt::format(
+                     "{} cells, {} unknowns, {} tools, end at {:.6g} s, stroke {:.6g} mm\n",
+                     state.tables.n_global_cells, state.n_unknowns(), scene.tools.size(),
+                     scene.end_time(), scene.stroke(scene.end_time()))
+              << std::flush;
+  }
+
+
+  void Progress::step(const StepRecord &record) const
+  {
+    if (quiet)
+      return;
+    std::string forces;
+    for (unsigned int i = 0; i < record.tools.size(); ++i)
+      forces += fmt::format("  {} {:.6g} N", scene.tools[i].name, record.tools[i].force);
+    for (unsigned int i = 0; i < record.boundaries.size(); ++i)
+      if (scene.boundaries[i].is_velocity)
+        forces += fmt::format("  {} {:.6g} MPa", scene.boundaries[i].name,
+                              record.boundaries[i].pressure);
+    const double left =
+        timer.wall_time() / (record.time - start_time) * (scene.end_time() - record.time);
+    std::cout << fmt::format(
+                     "step {:4}  t {:.5g} s  stroke {:.5g} mm{}  iterations {}  cells {}  left "
+                     "{}{}\n",
+                     record.step, record.time, record.stroke, forces, record.iterations,
+                     record.cells, duration(left),
+                     record.repeats ? fmt::format("  (repeated {} times)", record.repeats) : "")
+              << std::flush;
+  }
+
+
+  void Progress::mesh(const meshing::AdaptReport &report) const
+  {
+    if (quiet || !report.changed)
+      return;
+    std::cout << fmt::format("mesh adapted: {} cells, estimated error of the stress {:.2g}, "
+                             "changes of volume "
+                             "{:.1e}, of the strain's integral {:.1e}{}\n",
+                             report.cells, report.estimated_error, report.volume_change,
+                             report.strain_change,
+                             report.refused ? fmt::format(", {} families kept for the outline",
+                                                          report.refused)
+                                            : "")
+              << std::flush;
+  }
+
+
+  void Progress::remeshed(const State                 &state,
+                const std::string           &reason,
+                const meshing::RemeshResult &result) const
+  {
+    if (!quiet)
+      std::cout << fmt::format("remeshing after step {} ({}): {}\n", state.step, reason,
+                               meshing::describe(result))
+                << std::flush;
+  }
+
+
+  void Progress::end(const State       &state,
+           const StepTimes   &sum,
+           const double       analyse,
+           const std::string &folder) const
+  {
+    if (quiet)
+      return;
+    const double total = timer.wall_time();
+    std::cout << fmt::format("{} steps in {} ({:.1f} ms per step): cells {:.0f} %, contact and "
+                             "friction {:.0f} %, "
+                             "factorisation {:.0f} %, solve {:.0f} %, analysis {:.3f} s\n",
+                             state.step - start_step, duration(total),
+                             1e3 * total / std::max(1u, state.step - start_step),
+                             100 * (sum.assembly + sum.residual) / total,
+                             100 * sum.contact / total, 100 * sum.factor / total,
+                             100 * sum.solve / total, analyse)
+              << "Results: " << folder << '\n'
+              << std::flush;
+  }
+
+
+  void Progress::say(const std::string &line) const
+  {
+    if (!quiet)
+      std::cout << line << std::endl;
+  }
+} // namespace axiforge::process
