@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Upper die of the hub's third operation, drawn where it ends: a pin for the central hole, the annular cavity of the
+// Upper die of the hub's third operation, drawn Lift above where it ends: a pin for the central hole, the annular cavity of the
 // upper boss, the upper half of the flange, half of the flash land and its gutter. Lengths in mm, Draft in
 // degrees; the pin becomes thinner downwards, the boss upwards.
 DefineConstant[
+  Lift          = {65.5, Name "Lift"},
   TipHeight     = {35, Name "TipHeight"},        // z of the end of the pin
   PinRadius     = {21, Name "PinRadius"},        // at its end
   PinCorner     = {7, Name "PinCorner"},
@@ -34,5 +35,8 @@ chain_r[] = {0, PinRadius, PinRadius + (BossTop - TipHeight) * slope, BossRadius
 chain_z[] = {TipHeight, TipHeight, BossTop, BossTop, FlangeTop, FlangeTop, FlashHeight, FlashHeight,
              FlashHeight + GutterDepth, FlashHeight + GutterDepth};
 chain_f[] = {0, PinCorner, BossFillet, BossFillet, MouthRadius, FlangeFillet, LandRadius, LandRadius, LandRadius, 0};
+For chain_i In {0 : #chain_z[] - 1}
+  chain_z[chain_i] += Lift;
+EndFor
 Call RoundedChain;
 Physical Curve("tool") = chain_curves[];

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <cmath>
+#include <limits>
+
 #include <axiforge/base/errors.h>
 #include <axiforge/base/wording.h>
 #include <axiforge/meshing/initial_state.h>
@@ -55,5 +58,47 @@ namespace axiforge::process
       rest_on(parameters, state);
     if (parameters.placement.move != 0)
       move_axially(state, parameters.placement.move);
+  }
+
+
+  double time_of_first_contact(const scene::Scene            &scene,
+                               const scene::WorkpieceOutline &outline,
+                               const State                   &state)
+  {
+    bool held = state.boundary_ids.count("symmetry") > 0;
+    for (const scene::BoundaryCondition &boundary : scene.boundaries)
+      held |= boundary.is_velocity;
+    if (held)
+      return 0;
+    const double tolerance = touching * (outline.upper - outline.lower).norm();
+    double       first     = std::numeric_limits<double>::infinity();
+    bool         any       = false;
+    for (const scene::Tool &tool : scene.tools)
+      {
+        const Vector2 way = tool.motion.displacement(scene.end_time());
+        if (!(way.norm() > 0))
+          continue;
+        any = true;
+        const double travel = tools::travel_to_contact(tool.profile, outline.boundary_points,
+                                                       way / way.norm(), 2 * tolerance);
+        if (travel == 0)
+          return 0;
+        if (!(travel < way.norm()))
+          continue;
+        double low = 0, high = scene.end_time();
+        for (unsigned int i = 0; i < 200 && high - low > 1e-15 * high; ++i)
+          {
+            const double middle = 0.5 * (low + high);
+            (tool.motion.displacement(middle).norm() < travel ? low : high) = middle;
+          }
+        first = std::min(first, low);
+      }
+    if (any && !std::isfinite(first))
+      throw InputError(fmt::format(
+          "No moving tool reaches the workpiece before the end at {:.6g} s, stroke {:.6g} mm. Place "
+          "tool or workpiece closer (\"Tool NAME/Start = touching\", \"Placement/Rest on\"), or end "
+          "later.",
+          scene.end_time(), scene.stroke(scene.end_time())));
+    return any ? first : 0;
   }
 } // namespace axiforge::process

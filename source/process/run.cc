@@ -191,6 +191,8 @@ namespace axiforge::process
                 chain.progress.present.name = operation.operation;
               }
             const scene::Scene scene(operation, chain.progress.outline);
+            if (!resuming)
+              state.time = time_of_first_contact(scene, chain.progress.outline, state);
             run_one(chain, k, scene, state, resuming ? &*resumed : nullptr);
           });
           chain.progress.finished.push_back(chain.progress.present);

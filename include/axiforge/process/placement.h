@@ -13,4 +13,14 @@ namespace axiforge::process
    * @throws InputError if there is no such tool, or the workpiece would fall past it
    */
   void place_workpiece(const scene::SceneParameters &parameters, State &state);
+
+  /**
+   * Time [s] at which the first moving tool meets a workpiece that lies loosely: until then nothing
+   * happens to it, and nothing would hold it. 0 if a symmetry line or a velocity boundary holds it
+   * anyway, or if a tool touches it from the start.
+   * @throws InputError if no tool reaches it before the end
+   */
+  double time_of_first_contact(const scene::Scene            &scene,
+                               const scene::WorkpieceOutline &outline,
+                               const State                   &state);
 } // namespace axiforge::process
