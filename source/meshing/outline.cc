@@ -17,8 +17,8 @@ namespace axiforge::meshing
     /// Angles of the outline above this are corners [rad].
     constexpr double corner_angle = M_PI / 6;
 
-    /// Of the length of the edges with the way from an end of contact.
-    constexpr double growth = 0.3;
+    /// Those above this come before all others [rad].
+    constexpr double sharp_angle = M_PI / 4;
 
     /// A point inside a tool by this share of the size is moved out.
     constexpr double inside = 1e-9;
@@ -200,37 +200,122 @@ namespace axiforge::meshing
   }
 
 
-  std::vector<Outline::Corner> Outline::corners(const Loop &loop, const double edge_length) const
+  std::vector<std::vector<Outline::Sample>> Outline::sample(const double spacing) const
+  {
+    std::vector<std::vector<Sample>> result;
+    for (const Loop &loop : loops)
+      {
+        result.emplace_back();
+        for (const OutlinePiece &piece : loop)
+          {
+            const unsigned int n =
+                std::max(1u, static_cast<unsigned int>(std::ceil(piece.length() / spacing)));
+            for (unsigned int i = 0; i < n; ++i)
+              {
+                const double  xi = piece.parameter(i * piece.length() / n);
+                const Vector2 t  = piece.tangent(xi);
+                result.back().push_back({ piece.position(xi), Vector2({ -t[1], t[0] }), piece.id,
+                                          straight(piece.id) ? -1 : piece.tool });
+              }
+          }
+      }
+    return result;
+  }
+
+
+  std::vector<Point> Outline::contact_ends() const
+  {
+    std::vector<Point> ends;
+    for (const Loop &loop : loops)
+      for (unsigned int p = 0; p < loop.size(); ++p)
+        {
+          const OutlinePiece &piece = loop[p], &before = loop[(p + loop.size() - 1) % loop.size()];
+          if ((piece.tool < 0) != (before.tool < 0) && !straight(piece.id) && !straight(before.id))
+            ends.push_back(piece.x[0]);
+        }
+    return ends;
+  }
+
+
+  Point Outline::on_tool(const int tool, const Point &x) const
+  {
+    std::array<tools::Contact, 2> found;
+    if (scene.tools[tool].profile.find(Point(x - shift[tool]), std::numeric_limits<double>::max(),
+                                       found) == 0)
+      return x;
+    return found[0].closest + shift[tool];
+  }
+
+
+  void Outline::add_tool_corners(const Loop                &loop,
+                                 const std::vector<double> &start,
+                                 const SizeField           &field,
+                                 std::vector<Corner>       &found) const
+  {
+    constexpr unsigned int n = 16; // places looked at on a piece
+    for (unsigned int tool = 0; tool < scene.tools.size(); ++tool)
+      for (const tools::Profile::Corner &corner : scene.tools[tool].profile.corners())
+        {
+          const Point  x     = corner.place + shift[tool];
+          const double h     = field.at(x);
+          double       least = (corner.turn < 0 ? 0.3 : 0.1) * h;
+          double       s     = -1;
+          for (unsigned int p = 0; p < loop.size(); ++p)
+            {
+              const OutlinePiece &piece = loop[p];
+              if (straight(piece.id) || held(piece.id) || piece.tool != static_cast<int>(tool) ||
+                  piece.x[0].distance(x) > piece.length() + least)
+                continue;
+              for (unsigned int i = 0; i <= n; ++i)
+                if (const double d = piece.position(i / double(n)).distance(x); d < least)
+                  {
+                    least = d;
+                    s     = start[p] + piece.arc[i * 16 / n];
+                  }
+            }
+          if (s >= 0)
+            found.push_back({ s, false, std::abs(corner.turn) > corner_angle, true, x });
+        }
+  }
+
+
+  std::vector<Outline::Corner> Outline::corners(const Loop &loop, const SizeField &field) const
   {
     struct Candidate
     {
       Corner corner;
-      double rank;
+      double rank, least;
     };
     std::vector<Candidate> candidates;
-    double                 s = 0;
+    std::vector<double>    start(1, 0.);
     for (unsigned int p = 0; p < loop.size(); ++p)
       {
         const OutlinePiece &piece = loop[p], &before = loop[(p + loop.size() - 1) % loop.size()];
         const double        turn = angle_between(before.tangent(1), piece.tangent(0));
         const bool          hard = turn > corner_angle;
+        const double        s = start.back(), h = field.at(piece.x[0]);
         if (piece.id != before.id || (piece.node[0].tool[0] >= 0 && piece.node[0].tool[1] >= 0))
-          candidates.push_back({ { s, true, hard }, 1e3 });
+          candidates.push_back({ { s, true, hard, false, {} }, 1e3, 0 });
+        else if (turn > sharp_angle)
+          candidates.push_back({ { s, false, hard, false, {} }, 2e2, 0.3 * h });
         else if (piece.tool != before.tool)
-          candidates.push_back({ { s, false, hard }, 1e2 });
+          candidates.push_back({ { s, false, hard, false, {} }, 1e2, h });
         else if (hard)
-          candidates.push_back({ { s, false, hard }, turn });
-        s += piece.length();
+          candidates.push_back({ { s, false, hard, false, {} }, turn, 1.5 * h });
+        start.push_back(s + piece.length());
       }
-    const double whole = s;
+    std::vector<Corner> of_tools;
+    add_tool_corners(loop, start, field, of_tools);
+    for (const Corner &corner : of_tools)
+      candidates.push_back({ corner, 5e2, 0.3 * field.at(corner.place) });
+    const double whole = start.back();
     std::stable_sort(candidates.begin(), candidates.end(),
                      [](const Candidate &a, const Candidate &b) { return a.rank > b.rank; });
 
     std::vector<Corner> accepted;
-    for (const auto &[corner, rank] : candidates)
+    for (const auto &[corner, rank, least] : candidates)
       {
-        const double least = corner.keep ? 0 : (rank > 10 ? 1 : 1.5) * edge_length;
-        bool         clear = true;
+        bool clear = true;
         for (const Corner &other : accepted)
           {
             const double distance = std::abs(other.s - corner.s);
@@ -240,7 +325,7 @@ namespace axiforge::meshing
           accepted.push_back(corner);
       }
     if (accepted.empty())
-      accepted.push_back({ 0, false, true });
+      accepted.push_back({ 0, false, true, false, {} });
     std::sort(accepted.begin(), accepted.end(),
               [](const Corner &a, const Corner &b) { return a.s < b.s; });
     // A hard corner comes first: it is at vertex 0.
@@ -279,7 +364,6 @@ namespace axiforge::meshing
 
     int                           tool   = piece.tool;
     const Point                   before = node.position;
-    const double                  far    = std::numeric_limits<double>::max();
     std::array<tools::Contact, 2> found;
     if (tool < 0)
       // Open surface that passes through a tool between two nodes is caught here.
@@ -289,12 +373,8 @@ namespace axiforge::meshing
           tool = i;
     if (tool < 0)
       return node;
-    if (scene.tools[tool].profile.find(Point(before - shift[tool]), far, found) > 0)
-      {
-        const Point on_tool = found[0].closest + shift[tool];
-        if (on_tool.distance(before) < 0.5 * piece.length())
-          node.position = on_tool;
-      }
+    if (const Point x = on_tool(tool, before); x.distance(before) < 0.5 * piece.length())
+      node.position = x;
     if (piece.tool >= 0)
       node.carried = place.xi < 0.5 ? blend(piece.node[0], piece.node[2], 2 * place.xi, tool)
                                     : blend(piece.node[2], piece.node[1], 2 * place.xi - 1, tool);
@@ -304,20 +384,29 @@ namespace axiforge::meshing
   }
 
 
-  std::vector<double> Outline::contact_ends(const Loop &loop, const std::vector<double> &start)
+  NewNode Outline::middle_node(const Loop  &loop,
+                               const Place &place,
+                               const Point &from,
+                               const Point &to) const
   {
-    std::vector<double> ends;
-    for (unsigned int p = 0; p < loop.size(); ++p)
+    NewNode       node   = new_node(loop, place, false);
+    const Vector2 chord  = to - from;
+    const double  length = chord.norm();
+    // Where its ends were put on a tool the place may no longer be the middle between them.
+    const Vector2 along = (node.position - from) * chord / (length * length) * chord - 0.5 * chord;
+    if (along.norm() > 0.05 * length)
       {
-        const OutlinePiece &piece = loop[p], &before = loop[(p + loop.size() - 1) % loop.size()];
-        if (piece.tool != before.tool && !straight(piece.id) && !straight(before.id))
-          ends.push_back(start[p]);
+        node.position -= along;
+        if (node.carried.tool[0] >= 0)
+          if (const Point x = on_tool(static_cast<int>(node.carried.tool[0]), node.position);
+              x.distance(node.position) < 0.25 * length)
+            node.position = x;
       }
-    return ends;
+    return node;
   }
 
 
-  std::vector<NewLoop> Outline::divide(const double edge_length, const double refinement) const
+  std::vector<NewLoop> Outline::divide(SizeField &field) const
   {
     std::vector<NewLoop> result;
     for (const Loop &loop : loops)
@@ -325,7 +414,7 @@ namespace axiforge::meshing
         std::vector<double> start(loop.size() + 1, 0);
         for (unsigned int p = 0; p < loop.size(); ++p)
           start[p + 1] = start[p] + loop[p].length();
-        const std::vector<Corner> corner = corners(loop, edge_length);
+        const std::vector<Corner> corner = corners(loop, field);
 
         const auto place_of = [&](double s) {
           s                    = s >= start.back() ? s - start.back() : s;
@@ -333,41 +422,47 @@ namespace axiforge::meshing
               std::upper_bound(start.begin(), start.end(), s) - start.begin() - 1, loop.size() - 1);
           return Place{ p, loop[p].parameter(s - start[p]) };
         };
-
-        // Number of edges from the first corner to a place, for edges that grow by 0.3 of the way
-        // from an end of contact, where they are the shortest.
-        const std::vector<double> ends      = contact_ends(loop, start);
-        const auto                length_at = [&](const double s) {
-          double way = std::numeric_limits<double>::max();
-          for (const double end : ends)
-            {
-              const double d = std::abs(std::fmod(s, start.back()) - end);
-              way            = std::min({ way, d, start.back() - d });
-            }
-          return std::min(edge_length, edge_length / refinement + growth * way);
+        const auto point_at = [&](const double s) {
+          const Place place = place_of(s);
+          return loop[place.piece].position(place.xi);
         };
-
-        NewLoop             made;
-        std::vector<double> arc; // of vertices and middles, in turn
+        const auto end_of = [&](const unsigned int k) {
+          const double s = corner[(k + 1) % corner.size()].s;
+          return s > corner[k].s ? s : s + start.back();
+        };
+        const auto is_odd = [&](const unsigned int k) {
+          return corner[k].hard != corner[(k + 1) % corner.size()].hard;
+        };
         for (unsigned int k = 0; k < corner.size(); ++k)
           {
-            const Corner       &next   = corner[(k + 1) % corner.size()];
-            const double        end    = next.s > corner[k].s ? next.s : next.s + start.back();
-            const double        length = end - corner[k].s;
+            const double length = end_of(k) - corner[k].s;
+            const Point  middle = point_at(corner[k].s + 0.5 * length);
+            if (length < field.at(middle))
+              field.demand(middle, length / (is_odd(k) ? 1 : 2));
+          }
+
+        NewLoop             made;
+        std::vector<double> arc;     // of vertices and middles, in turn
+        std::vector<Place>  middles; // and the places of the middles
+        for (unsigned int k = 0; k < corner.size(); ++k)
+          {
+            const double length   = end_of(k) - corner[k].s;
+            double       shortest = length;
+            for (unsigned int i = 0; i <= 16; ++i)
+              shortest = std::min(shortest, field.at(point_at(corner[k].s + i * length / 16)));
             std::vector<double> count(1, 0.); // of edges up to each sample
             const unsigned int  samples =
-                16 * static_cast<unsigned int>(std::ceil(length * refinement / edge_length));
+                16 * static_cast<unsigned int>(std::ceil(length / shortest));
             for (unsigned int i = 0; i < samples; ++i)
               count.push_back(count.back() +
                               length / samples /
-                                  length_at(corner[k].s + (i + 0.5) * length / samples));
+                                  field.at(point_at(corner[k].s + (i + 0.5) * length / samples)));
             // Hard corners are at even vertices, the others at odd ones. A loop of one part needs
             // four edges, so that no pair ends where it begins.
-            const bool         odd = corner[k].hard != next.hard;
             const unsigned int n =
-                odd ? 2 * std::max<long>(0, std::lround(0.5 * (count.back() - 1))) + 1
-                    : 2 * std::max<long>(corner.size() == 1 ? 2 : 1,
-                                         std::lround(0.5 * count.back()));
+                is_odd(k) ? 2 * std::max<long>(0, std::lround(0.5 * (count.back() - 1))) + 1
+                          : 2 * std::max<long>(corner.size() == 1 ? 2 : 1,
+                                               std::lround(0.5 * count.back()));
             const auto place_after = [&](const double edges) {
               const double       wanted = edges * count.back() / n;
               const unsigned int i      = std::clamp<int>(
@@ -381,14 +476,21 @@ namespace axiforge::meshing
                 const double s      = i == 0 ? corner[k].s : place_after(i);
                 const double middle = 0.5 * (s + place_after(i + 1));
                 made.vertices.push_back(new_node(loop, place_of(s), i == 0 && corner[k].keep));
-                const Place place = place_of(middle);
-                made.middles.push_back(new_node(loop, place, false));
-                made.ids.push_back(loop[place.piece].id);
+                if (i == 0 && corner[k].snap)
+                  {
+                    // A concave corner has both flanks as its surfaces.
+                    made.vertices.back().position = corner[k].place;
+                  }
+                middles.push_back(place_of(middle));
+                made.ids.push_back(loop[middles.back().piece].id);
                 arc.push_back(s);
                 arc.push_back(middle);
               }
           }
-        set_directions(loop, arc, made, edge_length);
+        for (unsigned int k = 0; k < middles.size(); ++k)
+          made.middles.push_back(middle_node(loop, middles[k], made.vertices[k].position,
+                                             made.vertices[(k + 1) % middles.size()].position));
+        set_directions(loop, arc, field, made);
         result.push_back(made);
       }
     return result;
@@ -397,8 +499,8 @@ namespace axiforge::meshing
 
   void Outline::set_directions(const Loop                &loop,
                                const std::vector<double> &arc,
-                               NewLoop                   &result,
-                               const double               length) const
+                               const SizeField           &field,
+                               NewLoop                   &result) const
   {
     double whole = 0;
     for (const OutlinePiece &piece : loop)
@@ -433,7 +535,7 @@ namespace axiforge::meshing
             const double d = std::abs(s - arc[k]);
             distance       = std::min({ distance, d, whole - d });
           }
-        const double  weight = std::min(1., distance / (2 * length));
+        const double  weight = std::min(1., distance / (2 * field.at(node.position)));
         const Point   x      = node.position;
         const Vector2 along  = (free_after ? node_at(k + 1).position : x) -
                               (free_before ? node_at(k + 2 * n - 1).position : x);

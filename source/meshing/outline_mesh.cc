@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
-#include <utility>
 
 #include <deal.II/base/quadrature_lib.h>
 
@@ -13,19 +12,13 @@
 #include <axiforge/base/errors.h>
 #include <axiforge/base/gmsh_session.h>
 #include <axiforge/meshing/mesh_checks.h>
+#include <axiforge/meshing/mesh_repair.h>
 #include <axiforge/meshing/outline_mesh.h>
 
 namespace axiforge::meshing
 {
   namespace
   {
-    using Edge = std::pair<unsigned int, unsigned int>; ///< vertices, the smaller first
-
-    Edge edge_of(const unsigned int a, const unsigned int b)
-    {
-      return { std::min(a, b), std::max(a, b) };
-    }
-
     /// A corner between two boundary edges of one loop.
     struct Corner
     {
@@ -33,10 +26,13 @@ namespace axiforge::meshing
     };
 
     /// Worst Jacobian from which on the first mesh is taken without trying the other algorithms.
-    constexpr double good_enough = 0.2;
+    constexpr double good_enough = 0.3;
 
     /// Below this a mesh is not worth having.
     constexpr double too_bad = 0.02;
+
+    /// Of the vertices inside; they stop where nothing moves any more.
+    constexpr unsigned int smoothing_sweeps = 30;
 
     /// What gmsh's entities stand for.
     struct Model
@@ -145,40 +141,6 @@ namespace axiforge::meshing
     }
 
 
-    constexpr std::array<std::array<unsigned int, 3>, 4> edges_of_cell = {
-      { { { 0, 2, 4 } }, { { 1, 3, 5 } }, { { 0, 1, 6 } }, { { 2, 3, 7 } } }
-    };
-
-
-    /// Q2 nodes: the given middles on the boundary, straight edges inside, centres between them.
-    void set_cell_nodes(NewMesh &made)
-    {
-      WorkpieceMesh        &mesh = made.mesh;
-      std::map<Edge, Point> middle;
-      for (unsigned int e = 0; e < mesh.boundary_edges.size(); ++e)
-        middle[edge_of(mesh.boundary_edges[e].v0, mesh.boundary_edges[e].v1)] =
-            made.boundary[e][2].position;
-      mesh.cell_nodes.resize(mesh.cells.size());
-      for (unsigned int c = 0; c < mesh.cells.size(); ++c)
-        {
-          std::array<Point, 9> &x = mesh.cell_nodes[c];
-          Point                 centre;
-          for (unsigned int v = 0; v < 4; ++v)
-            {
-              x[v] = mesh.vertices[mesh.cells[c][v]];
-              centre += -0.25 * x[v];
-            }
-          for (const auto &[a, b, m] : edges_of_cell)
-            {
-              const auto found = middle.find(edge_of(mesh.cells[c][a], mesh.cells[c][b]));
-              x[m]             = found != middle.end() ? found->second : x[a] + 0.5 * (x[b] - x[a]);
-              centre += 0.5 * x[m];
-            }
-          x[8] = centre;
-        }
-    }
-
-
     NewMesh attempt(const Model &model, const std::vector<NewLoop> &loops)
     {
       NewMesh    made;
@@ -195,7 +157,45 @@ namespace axiforge::meshing
                   { { loops[l].vertices[k], loops[l].vertices[next], loops[l].middles[k] } });
             }
         }
-      set_cell_nodes(made);
+      repair_topology(made);
+      smooth(made, smoothing_sweeps);
+      return made;
+    }
+
+
+    NewMesh run_gmsh(const GmshSession          &session,
+                     const int                   algorithm,
+                     const int                   recombination,
+                     const std::vector<NewLoop> &loops,
+                     const SizeField            &field)
+    {
+      NewMesh made;
+      session.run("meshing the outline of the workpiece", [&] {
+        gmsh::clear();
+        for (const auto &[name, value] :
+             std::map<std::string, double>{ { "Mesh.Algorithm", algorithm },
+                                            { "Mesh.RecombinationAlgorithm", recombination },
+                                            { "Mesh.RecombineAll", 1 },
+                                            { "Mesh.Smoothing", 10 },
+                                            { "Mesh.ElementOrder", 1 },
+                                            { "Mesh.MeshOnlyVisible", 0 },
+                                            { "Mesh.MeshSizeFactor", 1 },
+                                            { "Mesh.MeshSizeFromPoints", 0 },
+                                            { "Mesh.MeshSizeFromCurvature", 0 },
+                                            { "Mesh.MeshSizeExtendFromBoundary", 1 },
+                                            { "Mesh.MeshSizeMin", 0 },
+                                            { "Mesh.MeshSizeMax", 1e22 } })
+          gmsh::option::setNumber(name, value);
+        const Model model = make_model(loops);
+        // In single precision for the reason that the points are.
+        gmsh::model::mesh::setSizeCallback([&](int, int, const double x, const double y, double) {
+          return static_cast<double>(static_cast<float>(field.at(Point(x, y))));
+        });
+        std::srand(1); // gmsh shifts points at random, and seeds only once per process
+        gmsh::model::mesh::generate(2);
+        gmsh::model::mesh::removeSizeCallback();
+        made = attempt(model, loops);
+      });
       return made;
     }
   } // namespace
@@ -223,6 +223,7 @@ namespace axiforge::meshing
 
 
   NewMesh mesh_outline(const std::vector<NewLoop>                              &loops,
+                       const SizeField                                         &field,
                        const std::map<std::string, dealii::types::boundary_id> &boundary_ids)
   {
     NewMesh best;
@@ -231,52 +232,39 @@ namespace axiforge::meshing
     constexpr std::array<std::array<int, 2>, 4> algorithms = {
       { { { 6, 2 } }, { { 6, 3 } }, { { 5, 2 } }, { { 5, 3 } } }
     };
-    GmshSession session;
-    for (const auto &[algorithm, recombination] : algorithms)
-      try
+    const auto consider = [&](NewMesh &made) {
+      made.mesh.boundary_ids  = boundary_ids;
+      const std::string fault = fault_of_mesh(made.mesh);
+      const double      value = fault.empty() ? smallest_scaled_jacobian(made.mesh) : -1;
+      if (value > best_value)
         {
-          NewMesh made;
-          session.run(
-              "meshing the outline of the workpiece", [&, a = algorithm, r = recombination] {
-                gmsh::clear();
-                for (const auto &[name, value] :
-                     std::map<std::string, double>{ { "Mesh.Algorithm", a },
-                                                    { "Mesh.RecombinationAlgorithm", r },
-                                                    { "Mesh.RecombineAll", 1 },
-                                                    { "Mesh.Smoothing", 10 },
-                                                    { "Mesh.ElementOrder", 1 },
-                                                    { "Mesh.MeshOnlyVisible", 0 },
-                                                    { "Mesh.MeshSizeFactor", 1 },
-                                                    { "Mesh.MeshSizeFromPoints", 0 },
-                                                    { "Mesh.MeshSizeFromCurvature", 0 },
-                                                    { "Mesh.MeshSizeExtendFromBoundary", 1 },
-                                                    { "Mesh.MeshSizeMin", 0 },
-                                                    { "Mesh.MeshSizeMax", 1e22 } })
-                  gmsh::option::setNumber(name, value);
-                const Model model = make_model(loops);
-                std::srand(1); // gmsh shifts points at random, and seeds only once per process
-                gmsh::model::mesh::generate(2);
-                made = attempt(model, loops);
-              });
-          made.mesh.boundary_ids  = boundary_ids;
-          const std::string fault = fault_of_mesh(made.mesh);
-          const double      value = fault.empty() ? smallest_scaled_jacobian(made.mesh) : -1;
-          if (value > best_value)
-            {
-              best       = made;
-              best_value = value;
-            }
-          else if (!best.fault.empty())
-            best.fault = fault.empty()
-                             ? fmt::format("the best mesh has a Jacobian of {:.3g}", value)
-                             : fault;
-          if (value > good_enough)
-            break;
+          best       = made;
+          best_value = value;
         }
-      catch (const std::exception &error) // of gmsh, in its words
+      else if (!best.fault.empty())
+        best.fault =
+            fault.empty() ? fmt::format("the best mesh has a Jacobian of {:.3g}", value) : fault;
+    };
+    GmshSession          session;
+    std::vector<NewMesh> all;
+    for (const auto &[algorithm, recombination] : algorithms)
+      if (best_value < good_enough)
+        try
+          {
+            all.push_back(run_gmsh(session, algorithm, recombination, loops, field));
+            consider(all.back());
+          }
+        catch (const std::exception &error) // of gmsh, in its words
+          {
+            if (!best.fault.empty())
+              best.fault = error.what();
+          }
+    for (NewMesh &made : all)
+      if (best_value < good_enough)
         {
-          if (!best.fault.empty())
-            best.fault = error.what();
+          add_boundary_row(made);
+          smooth(made, smoothing_sweeps);
+          consider(made);
         }
     return best;
   }
@@ -304,7 +292,7 @@ namespace axiforge::meshing
       for (std::array<NewNode, 3> &nodes : moved.boundary)
         for (NewNode &node : nodes)
           node.position += distance * node.direction;
-      set_cell_nodes(moved);
+      place_cell_nodes(moved);
       return moved.mesh.volume() - volume;
     };
     // The volume is a cubic polynomial of the distance, almost a line: the secant's rule.

@@ -3,12 +3,16 @@
 #include <limits>
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
 
 #include <fmt/format.h>
 
 #include <axiforge/base/errors.h>
+#include <axiforge/meshing/adapt.h>
+#include <axiforge/meshing/mesh_checks.h>
 #include <axiforge/meshing/outline_mesh.h>
 #include <axiforge/meshing/remesh.h>
+#include <axiforge/meshing/size_demands.h>
 #include <axiforge/meshing/transfer.h>
 
 namespace axiforge::meshing
@@ -40,6 +44,23 @@ namespace axiforge::meshing
     };
 
 
+    /// About how many cells a mesh with these sizes has: as many as the old cells would be cut
+    /// into.
+    double cells_of(const SizeField &field, const Snapshot &old)
+    {
+      double sum = 0;
+      for (const CellSnapshot &cell : old.cells)
+        {
+          const auto  &x    = cell.position;
+          const double area = 0.5 * std::abs((x[3][0] - x[0][0]) * (x[2][1] - x[1][1]) -
+                                             (x[3][1] - x[0][1]) * (x[2][0] - x[1][0]));
+          const double h    = field.at(Point(x[8][0], x[8][1]));
+          sum += size_for_cells * size_for_cells * area / (h * h);
+        }
+      return sum;
+    }
+
+
     Made make_mesh(const Snapshot     &old,
                    const scene::Scene &scene,
                    const State        &state,
@@ -47,19 +68,23 @@ namespace axiforge::meshing
     {
       Made          made;
       const Outline outline(old, scene, state.time);
-      const double  area = outline.area();
-      double        size = scene.remeshing.element_size > 0
-                               ? scene.remeshing.element_size
-                               : size_for_cells * std::sqrt(area / state.remeshing.wanted_cells);
-      size = std::max(size, size_for_cells * std::sqrt(area / scene.remeshing.most_cells));
+      const double  area  = outline.area();
+      const double  size  = scene.remeshing.element_size > 0
+                                ? scene.remeshing.element_size
+                                : size_for_cells * std::sqrt(area / state.remeshing.wanted_cells);
+      SizeField     field = make_size_field(outline, old, scene, state.time, size);
+      // Where the demands ask for too many cells, all of them are cut back alike.
+      const double cells = cells_of(field, old);
+      field.scale(std::max(1., std::sqrt(cells / scene.remeshing.most_cells)));
       // Another division of the outline helps where the first gives no good mesh.
       made.mesh.fault = "gmsh makes no sound mesh";
       double best     = -1;
-      for (const double factor : { 1., 0.93, 1.07, 0.86 })
+      for (const double factor : { 1., 0.93, 1.07, 0.86, 0.8, 1.15 })
         {
-          NewMesh mesh =
-              mesh_outline(outline.divide(factor * size, scene.remeshing.contact_refinement),
-                           state.boundary_ids);
+          SizeField scaled = field;
+          scaled.scale(factor);
+          const std::vector<NewLoop> loops = outline.divide(scaled);
+          NewMesh                    mesh  = mesh_outline(loops, scaled, state.boundary_ids);
           if (!mesh.fault.empty())
             {
               if (best < 0)
@@ -142,6 +167,46 @@ namespace axiforge::meshing
     }
 
 
+    /// ZZ indicators of the owned cells in the order of the tables.
+    std::vector<double> errors_of_cells(const scene::Scene &scene, const State &state)
+    {
+      double                      relative = 0;
+      const dealii::Vector<float> indicators =
+          error_indicators(state, scene.flow.regularisation * scene.characteristic_rate, relative);
+      std::vector<double> errors;
+      for (const dealii::CellId &id : state.tables.cell_ids)
+        errors.push_back(
+            indicators[state.triangulation.create_cell_iterator(id)->active_cell_index()]);
+      return errors;
+    }
+
+
+    /// Smallest determinant at a Gauss point over its mean in the cell if everything goes on with
+    /// the present velocity for a time [s].
+    double predicted_jacobian(const State &state, const double time)
+    {
+      const dealii::QGauss<2> gauss(3);
+      double                  worst = 1;
+      for (const auto &numbers : state.tables.cells)
+        {
+          std::array<Point, 9> x;
+          for (unsigned int a = 0; a < 9; ++a)
+            for (unsigned int c = 0; c < 2; ++c)
+              x[a][c] = state.position.local_element(2 * numbers[a] + c) +
+                        time * state.velocity.local_element(2 * numbers[a] + c);
+          double smallest = 1e300, area = 0;
+          for (unsigned int q = 0; q < gauss.size(); ++q)
+            {
+              const double j = jacobian(x, gauss.point(q));
+              smallest       = std::min(smallest, j);
+              area += j * gauss.weight(q);
+            }
+          worst = std::min(worst, smallest / std::abs(area));
+        }
+      return MPI::min(worst, state.communicator);
+    }
+
+
     double worst_jacobian(const Measures &measures)
     {
       return std::min(measures.smallest_jacobian, measures.smallest_vertex_jacobian);
@@ -169,6 +234,11 @@ namespace axiforge::meshing
     if (measures.smallest_vertex_jacobian <
         std::min(limits.smallest_vertex_jacobian, worse_jacobian * record.vertex_jacobian))
       return fmt::format("a Jacobian of {:.3g} at a vertex", measures.smallest_vertex_jacobian);
+    if (limits.smallest_predicted_jacobian > -1)
+      if (const double predicted = predicted_jacobian(state, state.last_time_step);
+          predicted <
+          std::min(limits.smallest_predicted_jacobian, worse_jacobian * record.jacobian))
+        return fmt::format("a Jacobian of {:.3g} in the next step", predicted);
     const double depth = Outline::penetration(state, scene);
     if (depth > std::max(limits.largest_penetration, worse_penetration * record.penetration))
       return fmt::format("an edge passes through a tool by {:.3g} of its length", depth);
@@ -187,8 +257,10 @@ namespace axiforge::meshing
       state.remeshing.wanted_cells = result.cells_before;
     state.remeshing.last_attempt = state.step;
 
-    const Snapshot old = take_snapshot(state);
-    Made           made;
+    const Snapshot old =
+        take_snapshot(state, scene.remeshing.error_refinement > 1 ? errors_of_cells(scene, state)
+                                                                  : std::vector<double>());
+    Made made;
     if (MPI::this_mpi_process(state.communicator) == 0)
       try
         {

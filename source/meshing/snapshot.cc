@@ -51,7 +51,7 @@ namespace axiforge::meshing
   } // namespace
 
 
-  Snapshot take_snapshot(const State &state)
+  Snapshot take_snapshot(const State &state, const std::vector<double> &errors)
   {
     Snapshot mine;
     for (unsigned int row = 0; row < state.tables.cells.size(); ++row)
@@ -75,6 +75,7 @@ namespace axiforge::meshing
             snapshot.strain_rate[q] = history.strain_rate[q];
             snapshot.flow_stress[q] = history.flow_stress[q];
           }
+        snapshot.error = errors.empty() ? 0 : errors[row];
         mine.cells.push_back(snapshot);
       }
 

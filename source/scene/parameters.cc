@@ -195,6 +195,11 @@ namespace axiforge::scene
         "Smallest vertex Jacobian", smallest_vertex_jacobian,
         "The same at the corners of the cells, where the surface folds on to a tool. -1: not used.",
         Patterns::Double(-1, 1));
+    prm.add_parameter("Smallest predicted Jacobian", smallest_predicted_jacobian,
+                      "The same at the Gauss points, as it would be after another step like the "
+                      "last one: a cell that "
+                      "is about to turn over gets a new mesh before the step fails. -1: not used.",
+                      Patterns::Double(-1, 1));
     prm.add_parameter(
         "Largest penetration", largest_penetration,
         "A new mesh is made when an edge passes through a tool between its nodes by more than this "
@@ -208,13 +213,38 @@ namespace axiforge::scene
         "Element size", element_size,
         "Length of the edges of the new cells [mm]. 0: about as many cells as at the start.",
         Patterns::Double(0));
+    prm.add_parameter("Smallest size", smallest_size,
+                      "No edge is asked to be shorter than this [mm], whatever the entries below "
+                      "say. 0: a tenth of "
+                      "the element size.",
+                      Patterns::Double(0));
+    prm.add_parameter("Growth", growth,
+                      "By how much edges may be longer a way of 1 farther on (dh/dx). 0.3: an edge "
+                      "is about a third "
+                      "longer than its neighbour, which quadrilaterals follow without bad angles.",
+                      Patterns::Double(0.05, 1));
+    prm.add_parameter("Edges per right angle", edges_per_right_angle,
+                      "Where the surface touches, or comes near to, a curved part of a tool, so "
+                      "many edges follow a "
+                      "right angle of it. 3: the parabola of an edge is off an arc by a thousandth "
+                      "of its radius at "
+                      "most. 0: not used.",
+                      Patterns::Double(0, 50));
     prm.add_parameter(
-        "Refinement at contact ends", contact_refinement,
-        "The element size over that where the surface leaves a tool; edges grow by 0.3 of the way "
-        "from there. 4 halves the jumps of the force where surface folds on to tools, but meshes "
-        "fail "
-        "more often. 1: no refinement.",
-        Patterns::Double(1, 20));
+        "Cells across", cells_across,
+        "At least about so many cells between two surfaces that face each other: walls, flash. 3: "
+        "enough for a parabolic flow with friction on both sides. 0: not used.",
+        Patterns::Double(0, 50));
+    prm.add_parameter("Error refinement", error_refinement,
+                      "Cells are smaller where the error indicator (ZZ) of the old mesh is above "
+                      "its mean, down to "
+                      "the element size over this. 1: not used.",
+                      Patterns::Double(1, 20));
+    prm.add_parameter("Refinement at contact ends", contact_refinement,
+                      "The element size over that where the surface leaves a tool. 4 halves the "
+                      "jumps of the force "
+                      "where surface folds on to tools. 1: no refinement.",
+                      Patterns::Double(1, 20));
     prm.add_parameter(
         "Most cells", most_cells,
         "The element size is raised so that a new mesh has about so many cells at most.",

@@ -395,6 +395,16 @@ namespace axiforge::tools
     return whole_length;
   }
 
+  std::vector<Profile::Corner> Profile::corners() const
+  {
+    std::vector<Corner> result;
+    for (const Chain &chain : chains)
+      for (unsigned int s = chain.closed ? 0 : 1; s < chain.segments.size(); ++s)
+        if (const double turn = chain.junctions[s].turn; std::abs(turn) > corner_angle)
+          result.push_back({ chain.segments[s].begin(), turn });
+    return result;
+  }
+
   unsigned int Profile::n_faces() const
   {
     return face_count;

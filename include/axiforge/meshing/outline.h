@@ -6,6 +6,7 @@
 
 #include <deal.II/base/types.h>
 
+#include <axiforge/meshing/size_field.h>
 #include <axiforge/meshing/snapshot.h>
 #include <axiforge/scene/scene.h>
 
@@ -53,7 +54,8 @@ namespace axiforge::meshing
    * New nodes stand on the old Q2 edges; those between touching nodes are moved on to the profile
    * of the tool, and so are those that have come to stand inside of one. Corners stay: ends of the
    * axis, the symmetry line and named parts; nodes that touch two surfaces; and, unless they come
-   * too close to each other, ends of contact and angles of more than 30 degrees.
+   * too close to each other, ends of contact and angles of more than 30 degrees. Where the surface
+   * passes over a corner of a tool, a node is put into that corner.
    *
    * gmsh makes quadrilaterals by splitting the edges of a coarser mesh, whose vertices are the even
    * ones: in an odd vertex two cells meet, an even one may be the corner of a single cell. So
@@ -65,8 +67,23 @@ namespace axiforge::meshing
   public:
     Outline(const Snapshot &snapshot, const scene::Scene &scene, double time);
 
-    /// Edges of about the given length [mm], the length over the refinement at ends of contact.
-    std::vector<NewLoop> divide(double edge_length, double refinement = 1) const;
+    /// A place of the outline.
+    struct Sample
+    {
+      Point                      x;
+      Vector2                    inward; ///< unit normal into the workpiece
+      dealii::types::boundary_id id;
+      int                        tool; ///< -1: none
+    };
+    /// Each loop at places about so far from each other [mm], the ends of pieces among them.
+    std::vector<std::vector<Sample>> sample(double spacing) const;
+
+    /// Places where the surface leaves a tool.
+    std::vector<Point> contact_ends() const;
+
+    /// Edges as long as the field wants them. Parts of the outline that are shorter than that
+    /// become demands of the field.
+    std::vector<NewLoop> divide(SizeField &field) const;
 
     /// Area of the meridian section [mm^2].
     double area() const;
@@ -85,18 +102,26 @@ namespace axiforge::meshing
 
     struct Corner
     {
-      double s;    ///< arc length [mm]
-      bool   keep; ///< the old node stays where it is
-      bool   hard; ///< the outline turns by more than 30 degrees
+      double s;            ///< arc length [mm]
+      bool   keep;         ///< the old node stays where it is
+      bool   hard;         ///< the outline turns by more than 30 degrees
+      bool   snap = false; ///< the node goes to a corner of the tool:
+      Point  place;
     };
 
-    NewNode                    new_node(const Loop &loop, const Place &place, bool keep) const;
-    void                       set_directions(const Loop                &loop,
-                                              const std::vector<double> &arc,
-                                              NewLoop                   &result,
-                                              double                     length) const;
-    static std::vector<double> contact_ends(const Loop &loop, const std::vector<double> &start);
-    std::vector<Corner>        corners(const Loop &loop, double edge_length) const;
+    NewNode             new_node(const Loop &loop, const Place &place, bool keep) const;
+    void                set_directions(const Loop                &loop,
+                                       const std::vector<double> &arc,
+                                       const SizeField           &field,
+                                       NewLoop                   &result) const;
+    std::vector<Corner> corners(const Loop &loop, const SizeField &field) const;
+    void                add_tool_corners(const Loop                &loop,
+                                         const std::vector<double> &start,
+                                         const SizeField           &field,
+                                         std::vector<Corner>       &found) const;
+    NewNode
+    middle_node(const Loop &loop, const Place &place, const Point &from, const Point &to) const;
+    Point on_tool(int tool, const Point &x) const;
 
     const scene::Scene  &scene;
     std::vector<Vector2> shift; ///< of the tools [mm]

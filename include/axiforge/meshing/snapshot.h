@@ -22,6 +22,7 @@ namespace axiforge::meshing
     double id[4]; ///< dealii::CellId: the same whatever the number of ranks
     double position[9][2], velocity[9][2];
     double strain[9], stress[9][4], mean_stress[9], strain_rate[9], flow_stress[9];
+    double error; ///< indicator eta^2 [mW], 0 if not asked for
   };
 
   /// A boundary edge, the workpiece on its left. Nodes: start, end, middle.
@@ -43,6 +44,6 @@ namespace axiforge::meshing
     std::vector<EdgeSnapshot> edges;
   };
 
-  /// Collective.
-  Snapshot take_snapshot(const State &state);
+  /// @param errors indicators of the owned cells in the order of the tables, or none. Collective.
+  Snapshot take_snapshot(const State &state, const std::vector<double> &errors = {});
 } // namespace axiforge::meshing

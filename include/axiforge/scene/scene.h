@@ -106,14 +106,20 @@ namespace axiforge::scene
   /// `subsection Remeshing`: a new mesh for the workpiece where the old one is used up.
   struct RemeshingParameters
   {
-    bool         enabled                  = false;
-    double       smallest_jacobian        = 0.25;
-    double       smallest_vertex_jacobian = 0.05;
-    double       largest_penetration      = 0.02;
-    unsigned int every_steps              = 0;
-    double       element_size             = 0; ///< [mm]; 0: as many cells as at the start
-    double       contact_refinement       = 1;
-    unsigned int most_cells               = 20000;
+    bool         enabled                     = false;
+    double       smallest_jacobian           = 0.25;
+    double       smallest_vertex_jacobian    = 0.05;
+    double       smallest_predicted_jacobian = 0.1;
+    double       largest_penetration         = 0.02;
+    unsigned int every_steps                 = 0;
+    double       element_size                = 0; ///< [mm]; 0: as many cells as at the start
+    double       smallest_size               = 0; ///< [mm]; 0: a tenth of the element size
+    double       growth                      = 0.3;
+    double       edges_per_right_angle       = 3;
+    double       cells_across                = 3;
+    double       error_refinement            = 1;
+    double       contact_refinement          = 1;
+    unsigned int most_cells                  = 20000;
 
     void declare(dealii::ParameterHandler &prm);
   };

@@ -96,6 +96,14 @@ namespace axiforge::tools
     /// Length of the outline [mm].
     double length() const;
 
+    /// A corner of more than `corner_angle` between two segments.
+    struct Corner
+    {
+      Point  place; ///< [mm], in the tool's own coordinates
+      double turn;  ///< angle between the tangents [rad], positive where the tool is concave
+    };
+    std::vector<Corner> corners() const;
+
     unsigned int n_faces() const;
     unsigned int n_chains() const;
 

@@ -1,0 +1,427 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include <axiforge/meshing/mesh_repair.h>
+
+namespace axiforge::meshing
+{
+  namespace
+  {
+    using Edge = std::pair<unsigned int, unsigned int>; ///< vertices, the smaller first
+
+    Edge edge_of(const unsigned int a, const unsigned int b)
+    {
+      return { std::min(a, b), std::max(a, b) };
+    }
+
+    /// Start, end and middle node of the sides of a cell.
+    constexpr std::array<std::array<unsigned int, 3>, 4> edges_of_cell = {
+      { { { 0, 2, 4 } }, { { 1, 3, 5 } }, { { 0, 1, 6 } }, { { 2, 3, 7 } } }
+    };
+
+    /// Corners of a cell in the order of its rim, and back.
+    constexpr std::array<unsigned int, 4> around = { { 0, 1, 3, 2 } };
+
+    /// A cell angle above this [rad] has to be mended.
+    constexpr double largest_angle = 0.85 * M_PI;
+
+
+    using Middles = std::map<Edge, Point>;
+
+    Middles boundary_middles(const NewMesh &made)
+    {
+      Middles middles;
+      for (unsigned int e = 0; e < made.mesh.boundary_edges.size(); ++e)
+        middles[edge_of(made.mesh.boundary_edges[e].v0, made.mesh.boundary_edges[e].v1)] =
+            made.boundary[e][2].position;
+      return middles;
+    }
+
+
+    void place_nodes(WorkpieceMesh &mesh, const Middles &middles, const unsigned int c)
+    {
+      std::array<Point, 9> &x = mesh.cell_nodes[c];
+      Point                 centre;
+      for (unsigned int v = 0; v < 4; ++v)
+        {
+          x[v] = mesh.vertices[mesh.cells[c][v]];
+          centre += -0.25 * x[v];
+        }
+      for (const auto &[a, b, m] : edges_of_cell)
+        {
+          const auto found = middles.find(edge_of(mesh.cells[c][a], mesh.cells[c][b]));
+          x[m]             = found != middles.end() ? found->second : x[a] + 0.5 * (x[b] - x[a]);
+          centre += 0.5 * x[m];
+        }
+      x[8] = centre;
+    }
+
+
+    /// Cells around each vertex.
+    std::vector<std::vector<unsigned int>> cells_of_vertices(const WorkpieceMesh &mesh)
+    {
+      std::vector<std::vector<unsigned int>> cells(mesh.vertices.size());
+      for (unsigned int c = 0; c < mesh.cells.size(); ++c)
+        for (const unsigned int v : mesh.cells[c])
+          cells[v].push_back(c);
+      return cells;
+    }
+
+
+    std::vector<bool> on_boundary(const WorkpieceMesh &mesh)
+    {
+      std::vector<bool> result(mesh.vertices.size(), false);
+      for (const WorkpieceMesh::BoundaryEdge &edge : mesh.boundary_edges)
+        result[edge.v0] = result[edge.v1] = true;
+      return result;
+    }
+
+
+    std::array<unsigned int, 4> cell_around(const unsigned int a,
+                                            const unsigned int b,
+                                            const unsigned int c,
+                                            const unsigned int d)
+    {
+      return { { a, b, d, c } };
+    }
+
+
+    /// Inner vertices with two cells go.
+    unsigned int remove_doublets(WorkpieceMesh &mesh)
+    {
+      unsigned int n_removed = 0;
+      for (bool again = true; again;)
+        {
+          again                         = false;
+          const auto              cells = cells_of_vertices(mesh);
+          const std::vector<bool> fixed = on_boundary(mesh);
+          for (unsigned int v = 0; v < mesh.vertices.size() && !again; ++v)
+            {
+              if (fixed[v] || cells[v].size() != 2)
+                continue;
+              // First cell (v, a, x, b), second (v, b, y, a): what is left is (a, x, b, y).
+              std::array<std::array<unsigned int, 4>, 2> rim;
+              for (unsigned int i = 0; i < 2; ++i)
+                {
+                  const auto  &cell  = mesh.cells[cells[v][i]];
+                  unsigned int start = 0;
+                  while (cell[around[start]] != v)
+                    ++start;
+                  for (unsigned int k = 0; k < 4; ++k)
+                    rim[i][k] = cell[around[(start + k) % 4]];
+                }
+              if (rim[0][1] != rim[1][3] || rim[0][3] != rim[1][1])
+                continue;
+              mesh.cells[cells[v][0]] = cell_around(rim[0][1], rim[0][2], rim[0][3], rim[1][2]);
+              mesh.cells.erase(mesh.cells.begin() + cells[v][1]);
+              mesh.vertices.erase(mesh.vertices.begin() + v);
+              for (auto &cell : mesh.cells)
+                for (unsigned int &w : cell)
+                  w -= w > v;
+              for (WorkpieceMesh::BoundaryEdge &edge : mesh.boundary_edges)
+                {
+                  edge.v0 -= edge.v0 > v;
+                  edge.v1 -= edge.v1 > v;
+                }
+              ++n_removed;
+              again = true;
+            }
+        }
+      return n_removed;
+    }
+
+
+    /// The cells shrink away from their common rim, and a ring of new cells takes its place.
+    void frame(WorkpieceMesh &mesh, const std::vector<unsigned int> &cells)
+    {
+      std::map<Edge, std::pair<unsigned int, Edge>> sides; // number of cells, and direction
+      std::map<unsigned int, Point>                 centre;
+      for (const unsigned int c : cells)
+        for (unsigned int k = 0; k < 4; ++k)
+          {
+            const unsigned int a = mesh.cells[c][around[k]], b = mesh.cells[c][around[(k + 1) % 4]];
+            auto              &side = sides[edge_of(a, b)];
+            ++side.first;
+            side.second = { a, b };
+          }
+      // Twins of the vertices of the rim, a third of the way to the middle of their cells.
+      std::map<unsigned int, unsigned int>                     twin;
+      std::map<unsigned int, std::pair<Vector2, unsigned int>> way;
+      for (const unsigned int c : cells)
+        {
+          Point middle;
+          for (const unsigned int v : mesh.cells[c])
+            middle += 0.25 * mesh.vertices[v];
+          for (const unsigned int v : mesh.cells[c])
+            {
+              way[v].first += middle - mesh.vertices[v];
+              ++way[v].second;
+            }
+        }
+      for (const auto &[edge, side] : sides)
+        if (side.first == 1)
+          for (const unsigned int v : { edge.first, edge.second })
+            if (twin.count(v) == 0)
+              {
+                twin[v] = mesh.vertices.size();
+                mesh.vertices.push_back(mesh.vertices[v] + way[v].first / (3. * way[v].second));
+              }
+      for (const unsigned int c : cells)
+        for (unsigned int &v : mesh.cells[c])
+          if (const auto found = twin.find(v); found != twin.end())
+            v = found->second;
+      for (const auto &[edge, side] : sides)
+        if (side.first == 1)
+          {
+            const auto &[a, b] = side.second;
+            mesh.cells.push_back(cell_around(a, b, twin[b], twin[a]));
+          }
+    }
+
+
+    /// Angle of the workpiece at the vertices of the boundary [rad].
+    std::map<unsigned int, double> boundary_angles(const NewMesh &made)
+    {
+      std::map<unsigned int, Vector2> arriving, leaving;
+      for (unsigned int e = 0; e < made.mesh.boundary_edges.size(); ++e)
+        {
+          const auto &edge     = made.mesh.boundary_edges[e];
+          const Point x0       = made.mesh.vertices[edge.v0];
+          const Point x1       = made.mesh.vertices[edge.v1];
+          const Point m        = made.boundary[e][2].position;
+          leaving[edge.v0]     = 4. * (m - x0) - (x1 - x0);
+          arriving[edge.v1]    = (x1 - x0) - 4. * (m - x0) + 2. * (x1 - x0);
+        }
+      std::map<unsigned int, double> angles;
+      for (const auto &[v, in] : arriving)
+        {
+          const Vector2 out = leaving[v];
+          angles[v] = M_PI - std::atan2(in[0] * out[1] - in[1] * out[0], in * out);
+        }
+      return angles;
+    }
+
+
+    unsigned int frame_flat_corners(NewMesh &made)
+    {
+      unsigned int n_framed = 0;
+      for (const auto &[v, angle] : boundary_angles(made))
+        {
+          const auto cells = cells_of_vertices(made.mesh)[v];
+          if (cells.size() != 1 || angle < largest_angle)
+            continue;
+          frame(made.mesh, cells);
+          ++n_framed;
+        }
+      return n_framed;
+    }
+
+
+    /// Derivatives of the nodes' shape functions at points of a cell: corners and those next to
+    /// them of the 3 x 3 Gauss points.
+    struct Samples
+    {
+      static constexpr unsigned int n = 8;
+      double                        d[n][9][2];
+
+      static const Samples &get()
+      {
+        static const Samples samples;
+        return samples;
+      }
+
+      Samples()
+      {
+        const unsigned int column[9] = { 0, 2, 0, 2, 0, 2, 1, 1, 1 },
+                           row[9]    = { 0, 0, 2, 2, 1, 1, 0, 2, 1 };
+        const double       inside    = 0.5 - std::sqrt(0.15);
+        for (unsigned int q = 0; q < n; ++q)
+          {
+            double u[2][3], du[2][3];
+            for (unsigned int c = 0; c < 2; ++c)
+              {
+                const double end = (c == 0 ? q % 2 : q / 2 % 2);
+                const double t   = q < 4 ? end : (end > 0.5 ? 1 - inside : inside);
+                u[c][0]          = (1 - t) * (1 - 2 * t);
+                u[c][1]          = 4 * t * (1 - t);
+                u[c][2]          = t * (2 * t - 1);
+                du[c][0]         = 4 * t - 3;
+                du[c][1]         = 4 - 8 * t;
+                du[c][2]         = 4 * t - 1;
+              }
+            for (unsigned int a = 0; a < 9; ++a)
+              {
+                d[q][a][0] = du[0][column[a]] * u[1][row[a]];
+                d[q][a][1] = u[0][column[a]] * du[1][row[a]];
+              }
+          }
+      }
+    };
+
+
+    /// Determinants at the samples, and |J|^2 / 2.
+    void sample(const std::array<Point, 9> &x,
+                double (&det)[Samples::n],
+                double (&half)[Samples::n])
+    {
+      const Samples &samples = Samples::get();
+      for (unsigned int q = 0; q < Samples::n; ++q)
+        {
+          double J[2][2] = { { 0, 0 }, { 0, 0 } };
+          for (unsigned int a = 0; a < 9; ++a)
+            for (unsigned int c = 0; c < 2; ++c)
+              for (unsigned int k = 0; k < 2; ++k)
+                J[c][k] += x[a][c] * samples.d[q][a][k];
+          det[q]  = J[0][0] * J[1][1] - J[0][1] * J[1][0];
+          half[q] = 0.5 * (J[0][0] * J[0][0] + J[0][1] * J[0][1] + J[1][0] * J[1][0] +
+                           J[1][1] * J[1][1]);
+        }
+    }
+
+
+    class Smoother
+    {
+    public:
+      explicit Smoother(NewMesh &made)
+          : mesh(made.mesh)
+          , middles(boundary_middles(made))
+          , cells(cells_of_vertices(mesh))
+          , fixed(on_boundary(mesh))
+      {
+      }
+
+      /// Largest way of a vertex in units of its cells' size.
+      double sweep()
+      {
+        set_delta();
+        double largest = 0;
+        for (unsigned int v = 0; v < mesh.vertices.size(); ++v)
+          if (!fixed[v])
+            largest = std::max(largest, move(v));
+        return largest;
+      }
+
+    private:
+      double energy(const unsigned int v)
+      {
+        double sum = 0;
+        for (const unsigned int c : cells[v])
+          {
+            place_nodes(mesh, middles, c);
+            double det[Samples::n], half[Samples::n];
+            sample(mesh.cell_nodes[c], det, half);
+            for (unsigned int q = 0; q < Samples::n; ++q)
+              {
+                const double d = det[q] / half[q];
+                const double h = 0.5 * (d + std::sqrt(d * d + 4 * delta * delta));
+                if (!(h > 0))
+                  return 1e300;
+                sum += 1 / (h * h);
+              }
+          }
+        return sum;
+      }
+
+      void set_delta()
+      {
+        double least = 1e300;
+        for (unsigned int c = 0; c < mesh.cells.size(); ++c)
+          {
+            double det[Samples::n], half[Samples::n];
+            sample(mesh.cell_nodes[c], det, half);
+            for (unsigned int q = 0; q < Samples::n; ++q)
+              least = std::min(least, det[q] / half[q]);
+          }
+        constexpr double small = 0.05;
+        delta                  = least < small ? std::sqrt(small * (small - least)) : 0;
+      }
+
+      double move(const unsigned int v)
+      {
+        const Point start = mesh.vertices[v];
+        double      size  = 0;
+        for (const unsigned int c : cells[v])
+          size = std::max(size, mesh.cell_nodes[c][0].distance(mesh.cell_nodes[c][3]));
+        const double step = 1e-3 * size;
+        const auto   at   = [&](const double r, const double z) {
+          mesh.vertices[v] = start + Vector2({ r, z });
+          return energy(v);
+        };
+        const double e0 = at(0, 0), er = at(step, 0), el = at(-step, 0), eu = at(0, step),
+                     ed = at(0, -step), eru = at(step, step), eld = at(-step, -step);
+        const double gr = 0.5 * (er - el), gz = 0.5 * (eu - ed);
+        double       hrr = er + el - 2 * e0, hzz = eu + ed - 2 * e0;
+        double       hrz = 0.5 * (eru + eld - er - el - eu - ed + 2 * e0);
+        // Make the matrix positive definite.
+        const double mean = 0.5 * (hrr + hzz), spread = std::hypot(0.5 * (hrr - hzz), hrz);
+        const double shift = std::max(0., spread - mean + 0.1 * std::max(spread, std::abs(mean)));
+        hrr += shift;
+        hzz += shift;
+        const double det = hrr * hzz - hrz * hrz;
+        double       dr = 0, dz = 0;
+        if (det > 0 && std::isfinite(det))
+          {
+            dr = -(hzz * gr - hrz * gz) / det * step;
+            dz = -(hrr * gz - hrz * gr) / det * step;
+          }
+        if (const double length = std::hypot(dr, dz); length > 0.2 * size)
+          {
+            dr *= 0.2 * size / length;
+            dz *= 0.2 * size / length;
+          }
+        for (unsigned int i = 0; i < 6; ++i, dr *= 0.5, dz *= 0.5)
+          if (at(dr, dz) < e0)
+            return std::hypot(dr, dz) / size;
+        at(0, 0);
+        return 0;
+      }
+
+      WorkpieceMesh                         &mesh;
+      const Middles                          middles;
+      std::vector<std::vector<unsigned int>> cells;
+      std::vector<bool>                      fixed;
+      double                                 delta = 0;
+    };
+  } // namespace
+
+
+  void place_cell_nodes(NewMesh &made)
+  {
+    const Middles middles = boundary_middles(made);
+    made.mesh.cell_nodes.resize(made.mesh.cells.size());
+    for (unsigned int c = 0; c < made.mesh.cells.size(); ++c)
+      place_nodes(made.mesh, middles, c);
+  }
+
+
+  unsigned int repair_topology(NewMesh &made)
+  {
+    const unsigned int n_changes = remove_doublets(made.mesh) + frame_flat_corners(made);
+    place_cell_nodes(made);
+    return n_changes;
+  }
+
+
+  void add_boundary_row(NewMesh &made)
+  {
+    std::vector<unsigned int> all(made.mesh.cells.size());
+    for (unsigned int c = 0; c < all.size(); ++c)
+      all[c] = c;
+    frame(made.mesh, all);
+    place_cell_nodes(made);
+  }
+
+
+  void smooth(NewMesh &made, const unsigned int sweeps)
+  {
+    place_cell_nodes(made);
+    Smoother smoother(made);
+    for (unsigned int i = 0; i < sweeps; ++i)
+      if (smoother.sweep() < 1e-3)
+        break;
+    place_cell_nodes(made);
+  }
+} // namespace axiforge::meshing
