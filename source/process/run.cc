@@ -11,6 +11,7 @@
 #include <axiforge/meshing/initial_state.h>
 #include <axiforge/meshing/remesh.h>
 #include <axiforge/output/results.h>
+#include <axiforge/process/accuracy.h>
 #include <axiforge/process/checkpointing.h>
 #include <axiforge/process/mesh_change.h>
 #include <axiforge/process/run.h>
@@ -70,13 +71,14 @@ namespace axiforge::process
                                   record.boundaries[i].pressure);
         const double left =
             timer.wall_time() / (record.time - start_time) * (scene.end_time() - record.time);
-        std::cout << fmt::format(
-                         "step {:4}  t {:.5g} s  stroke {:.5g} mm{}  iterations {}  cells {}  left "
-                         "{}{}\n",
-                         record.step, record.time, record.stroke, forces, record.iterations,
-                         record.cells, duration(left),
-                         record.repeats ? fmt::format("  (repeated {} times)", record.repeats) : "")
-                  << std::flush;
+        std::cout
+            << fmt::format(
+                   "step {:4}  t {:.5g} s  stroke {:.5g} mm{}  iterations {}  cells {}{}  left "
+                   "{}{}\n",
+                   record.step, record.time, record.stroke, forces, record.iterations, record.cells,
+                   describe_errors(scene, record), duration(left),
+                   record.repeats ? fmt::format("  (repeated {} times)", record.repeats) : "")
+            << std::flush;
       }
 
       void mesh(const meshing::AdaptReport &report) const
@@ -120,7 +122,7 @@ namespace axiforge::process
                                  100 * (sum.assembly + sum.residual) / total,
                                  100 * sum.contact / total, 100 * sum.factor / total,
                                  100 * sum.solve / total, analyse)
-                  << "Results: " << folder << '\n'
+                  << summary_of_errors(scene, state) << "Results: " << folder << '\n'
                   << std::flush;
       }
 
@@ -293,7 +295,8 @@ namespace axiforge::process
           adapt_at_start(scene, state, solver, choose_step_size(scene, state, record));
         while (state.time < scene.end_time() * (1 - 1e-12) && state.step < scene.time.most_steps)
           {
-            record                       = step(scene, state, solver, progress, record);
+            record = step(scene, state, solver, progress, record);
+            estimate_errors(scene, state, record);
             record.remeshings            = state.remeshing.count;
             record.remeshing_volume_jump = state.remeshing.volume_jump;
             record.remeshing_strain_jump = state.remeshing.strain_jump;
@@ -302,7 +305,7 @@ namespace axiforge::process
             sum.add(record.times);
             if (options.on_step)
               options.on_step(scene, record);
-            progress.mesh(adapt_if_due(scene, state, solver));
+            progress.mesh(adapt_if_due(scene, state, solver, record));
             if (checkpoints.after_step(state, record, results) && !quiet)
               std::cout << "checkpoint after step " << state.step << std::endl;
           }

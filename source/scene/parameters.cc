@@ -149,6 +149,17 @@ namespace axiforge::scene
         "Cells are not divided into smaller ones than this [mm] (their shorter diagonal). "
         "0: not used.",
         Patterns::Double(0));
+    prm.add_parameter(
+        "Largest chord error", largest_chord_error,
+        "A cell is divided if its edge between touching nodes is off the tool's profile by more "
+        "than this share of the edge's length: a fillet, or surface that folds over. 0: not used.",
+        Patterns::Double(0));
+    prm.add_parameter(
+        "Edges per quarter circle", edges_per_quarter,
+        "So many edges of the surface there should be along a quarter of a circle with the radius "
+        "of curvature of the tool that it touches. 3 keeps a curved edge within 1e-4 of the "
+        "radius. 0: not used.",
+        Patterns::Double(0));
   }
 
 
@@ -291,6 +302,10 @@ namespace axiforge::scene
         "Boundaries", boundary_names,
         "Names of physical curves of the workpiece with a condition of their own; each "
         "has its section 'Boundary NAME'. Axis and symmetry need none.");
+    prm.add_parameter(
+        "Regions", region_names,
+        "Names of boxes with finer cells, separated by commas; each has its section 'Region NAME'. "
+        "They need \"Refinement/Enabled = true\" or a target accuracy.");
     prm.enter_subsection("Workpiece");
     workpiece.declare_workpiece(prm);
     prm.leave_subsection();
@@ -307,6 +322,12 @@ namespace axiforge::scene
       {
         prm.enter_subsection("Boundary " + boundary.name);
         boundary.declare(prm);
+        prm.leave_subsection();
+      }
+    for (RegionParameters &region : regions)
+      {
+        prm.enter_subsection("Region " + region.name);
+        region.declare(prm);
         prm.leave_subsection();
       }
     prm.enter_subsection("Process");
@@ -333,6 +354,9 @@ namespace axiforge::scene
     prm.enter_subsection("Checkpoint");
     checkpoint.declare(prm);
     prm.leave_subsection();
+    prm.enter_subsection("Accuracy");
+    accuracy.declare(prm);
+    prm.leave_subsection();
   }
 
 
@@ -345,6 +369,7 @@ namespace axiforge::scene
       ParameterHandler names;
       names.add_parameter("Tools", tool_names);
       names.add_parameter("Boundaries", boundary_names);
+      names.add_parameter("Regions", region_names);
       file.parse(names, true);
     }
     for (const std::string &name : split_names("Tools", tool_names))
@@ -356,6 +381,11 @@ namespace axiforge::scene
       {
         boundaries.emplace_back();
         boundaries.back().name = name;
+      }
+    for (const std::string &name : split_names("Regions", region_names))
+      {
+        regions.emplace_back();
+        regions.back().name = name;
       }
     // add_parameter keeps addresses: the vectors must not grow from here on.
     declare(*handler);
