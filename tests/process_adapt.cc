@@ -140,6 +140,274 @@ TEST(Adapt, refuses_to_move_the_outline)
 }
 
 
+// Pipe flow of a linear viscous material: v_z is quadratic in r and the pressure linear in z, both
+// in the finite element spaces. The discrete solution is the exact one on every mesh, so after a
+// change of the mesh the next solution has nothing to do, provided that velocity, pressure and
+// stresses are carried over exactly.
+TEST(Adapt, an_exact_solution_stays_one)
+{
+  TemporaryFolder   folder;
+  const std::string pipe    = folder.file("pipe.geo", R"(
+Point(1) = {0, 0, 0};
+Point(2) = {10, 0, 0};
+Point(3) = {10, 10, 0};
+Point(4) = {0, 10, 0};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {4, 3};
+Line(4) = {1, 4};
+Curve Loop(1) = {1, 2, -3, -4};
+Plane Surface(1) = {1};
+Transfinite Curve{1, 3} = 4;
+Transfinite Curve{2, 4} = 4;
+Transfinite Surface{1} = {1, 2, 3, 4};
+Recombine Surface{1};
+Physical Surface("workpiece") = {1};
+Physical Curve("in") = {1};
+Physical Curve("wall") = {2};
+Physical Curve("out") = {3};
+Physical Curve("axis") = {4};
+)");
+  const std::string profile = "1 - (r/10)^2";
+  FlowProblem       problem(Entries{ "Boundaries = in, out, wall", "Process/End time = 1",
+                               "Boundary in/Velocity z = " + profile, "Boundary in/Velocity r = 0",
+                               "Boundary out/Velocity r = 0", "Boundary out/Velocity z = free",
+                               "Boundary wall/Velocity r = 0", "Boundary wall/Velocity z = 0",
+                               "Time stepping/Scheme = explicit euler" } +
+                            power_law(100, 1) + workpiece(pipe) + refinement(0.4, 0.3, 3));
+  auto              result = problem.solve_at_start(1e-6);
+  EXPECT_GT(result.record.iterations, 1u);
+  // 4 mu U L/R^2 with sigma = 3 mu epsdot
+  double highest = 0;
+  for (const CellHistory &cell : result.cell_history)
+    highest = std::max(highest, -cell.mean_stress[0]);
+  EXPECT_GT(highest, 0.7 * 4 * 100. / 3 / 10);
+
+  process::take_as_start(problem.state, result);
+  unsigned int n      = problem.state.tables.cells.size();
+  bool         joined = false;
+  for (const Point &peak : { Point(10, 10), Point(10, 10), Point(0, 0), Point(0, 0) })
+    {
+      dealii::Vector<float> near(problem.state.triangulation.n_active_cells());
+      for (const auto &cell : problem.state.triangulation.active_cell_iterators())
+        near[cell->active_cell_index()] = std::exp(-cell->center().distance(peak));
+      meshing::Marking marking{ near, 0.5, 0.2 };
+      ASSERT_TRUE(meshing::adapt(problem.scene, problem.state, marking).changed);
+      joined |= problem.state.tables.cells.size() < n;
+      n = problem.state.tables.cells.size();
+      problem.forget_solver();
+      result = problem.solve_at_start(1e-6);
+      EXPECT_EQ(result.record.iterations, 0u) << n << " cells, residual " << result.record.residual;
+    }
+}
+
+
+// A body that lies on the fillet of a tool, all of it strained alike: nodes that come about between
+// touching ones lie on the tool and touch it, what friction keeps stays linear along the surface,
+// and the strain stays uniform, through division and joining.
+TEST(Adapt, curved_contact)
+{
+  FlowProblem problem(
+      Entries{ "Tools = cone", "Process/End stroke = 1",
+               "Tool cone/Geometry file = " + geometry("cone_tool.geo"),
+               "Tool cone/Geometry parameters = HalfAngle = 60, TipRadius = 5, "
+               "CornerRadius = 8, Radius = 60, Z = 25",
+               "Tool cone/Motion/Type = constant velocity", "Tool cone/Motion/Velocity = 0, -0.25",
+               "Tool cone/Friction/Law = shear", "Tool cone/Friction/Factor = 0.3" } +
+      workpiece(geometry("cylinder.geo"), "RadialCells = 8, AxialCells = 6") +
+      perfectly_plastic(100) + refinement(0.6, 0.3, 3) +
+      Entries{ "Refinement/Largest chord error = 0", "Refinement/Edges per quarter circle = 0" });
+  State      &state = problem.state;
+  const auto &tool  = problem.scene.tools[0].profile;
+  // The top is drawn on to the tool, nodes and all.
+  problem.map_nodes([&](const Point &x) {
+    std::array<tools::Contact, 2> found;
+    if (x[1] < 24.99 ||
+        tool.find(Point(x[0], 25 + 0.577 * std::max(0., x[0] - 5)), 1e3, found) == 0)
+      return x;
+    Point on = found[0].closest;
+    on[0]    = x[0] == 0 ? 0 : on[0];
+    return on;
+  });
+  set_strain(problem, [](const Point &) { return 0.7; });
+  const auto touch = [&](const Point &x) {
+    std::array<tools::Contact, 2> found;
+    return tool.find(x, 1e-7, found) > 0 && std::abs(found[0].gap) < 1e-8;
+  };
+  unsigned int touching = 0;
+  for (unsigned int b = 0; b < state.contacts.size(); ++b)
+    if (touch(state.node_position(state.tables.boundary_nodes[b].node)) &&
+        state.tables.boundary_nodes[b].free_surface)
+      {
+        state.contacts[b].tool[0] = 0;
+        ++touching;
+      }
+  ASSERT_EQ(touching, 17u);
+  const auto traction = [](const Point &x) { return 3 + 0.2 * x[0]; };
+  for (unsigned int e = 0; e < state.tables.edges.size(); ++e)
+    for (unsigned int a = 0; a < 3; ++a)
+      state.edge_friction[e].traction[a] =
+          traction(state.node_position(state.tables.edges[e].nodes[a]));
+
+  unsigned int most = 0;
+  for (const Point &peak :
+       { Point(10, 26), Point(10, 26), Point(25, 0), Point(25, 0), Point(25, 0) })
+    {
+      fake_stress_peak(problem, peak);
+      ASSERT_TRUE(meshing::adapt(problem.scene, state).changed);
+      for (unsigned int i = 0; i < state.strain.locally_owned_size(); ++i)
+        EXPECT_NEAR(state.strain.local_element(i), 0.7, 1e-10);
+      unsigned int now = 0;
+      for (unsigned int e = 0; e < state.tables.edges.size(); ++e)
+        {
+          const BoundaryEdge &edge   = state.tables.edges[e];
+          const NodeContact  &middle = state.contacts[edge.boundary_nodes[2]];
+          if (!middle.active())
+            continue;
+          ++now;
+          for (unsigned int a = 0; a < 3; ++a)
+            {
+              const Point x = state.node_position(edge.nodes[a]);
+              EXPECT_TRUE(touch(x)) << x;
+              EXPECT_TRUE(state.contacts[edge.boundary_nodes[a]].active());
+              // linear but for the curvature of the edges
+              EXPECT_NEAR(state.edge_friction[e].traction[a], traction(x), 0.02);
+            }
+        }
+      EXPECT_GE(now, most); // the outline of the fillet is not joined again
+      most = std::max(most, now);
+    }
+  EXPECT_GT(most, 12u);
+}
+
+
+// A fillet asks for edges that are short against its radius; a flat platen asks for nothing.
+TEST(Adapt, surface_of_tools)
+{
+  const auto cells = [](const std::string &chord, const std::string &edges) {
+    FlowProblem problem(
+        Entries{
+            "Tools = cone", "Process/End stroke = 1",
+            "Tool cone/Geometry file = " + geometry("cone_tool.geo"),
+            "Tool cone/Geometry parameters = HalfAngle = 60, TipRadius = 10, CornerRadius = 2, "
+            "Radius = 60, Z = 25",
+            "Tool cone/Motion/Type = constant velocity", "Tool cone/Motion/Velocity = 0, -0.25",
+            "Refinement/Largest level = 6" } +
+        workpiece(geometry("cylinder.geo"), "RadialCells = 5, AxialCells = 5") +
+        perfectly_plastic(100) + refinement(0, 0, 6) +
+        Entries{ "Refinement/Largest chord error = " + chord,
+                 "Refinement/Edges per quarter circle = " + edges });
+    auto solver = std::make_unique<solvers::FlowSolver>(problem.scene, problem.state);
+    process::adapt_at_start(problem.scene, problem.state, solver, 1e-3);
+    double longest = 0; // where the fillet begins
+    for (const BoundaryEdge &edge : problem.state.tables.edges)
+      {
+        const Point x = problem.state.node_position(edge.nodes[2]);
+        if (x.distance(Point(10, 25)) < 1)
+          longest = std::max(longest, problem.state.node_position(edge.nodes[0])
+                                          .distance(problem.state.node_position(edge.nodes[1])));
+      }
+    return std::make_pair(static_cast<unsigned int>(problem.state.tables.cells.size()), longest);
+  };
+  EXPECT_EQ(cells("0", "0").first, 25u);
+  const auto three = cells("0", "3"), six = cells("0", "6");
+  EXPECT_GT(three.first, 25u);
+  EXPECT_LE(three.second, M_PI / 3);
+  EXPECT_GT(six.first, three.first);
+  EXPECT_LE(six.second, M_PI / 6);
+}
+
+
+// An edge that cuts through the corner of a tool between its nodes is divided until what it cuts
+// off is below the tolerance.
+TEST(Adapt, chord_error)
+{
+  FlowProblem problem(Entries{ "Tools = cone", "Process/End stroke = 1",
+                               "Tool cone/Geometry file = " + geometry("cone_tool.geo"),
+                               "Tool cone/Geometry parameters = HalfAngle = 60, TipRadius = 12, "
+                               "CornerRadius = 4, Radius = 60, Z = 25",
+                               "Tool cone/Motion/Type = constant velocity",
+                               "Tool cone/Motion/Velocity = 0, -0.25" } +
+                      workpiece(geometry("cylinder.geo"), "RadialCells = 3, AxialCells = 3") +
+                      perfectly_plastic(100) + refinement(0, 0, 6) +
+                      Entries{ "Refinement/Edges per quarter circle = 0",
+                               "Refinement/Largest chord error = 0.002" });
+  State      &state = problem.state;
+  const auto &tool  = problem.scene.tools[0].profile;
+  problem.map_nodes([&](const Point &x) {
+    std::array<tools::Contact, 2> found;
+    if (x[1] < 24.99 ||
+        tool.find(Point(x[0], 25 + 0.577 * std::max(0., x[0] - 12)), 1e3, found) == 0)
+      return x;
+    return x[0] == 0 ? x : found[0].closest;
+  });
+  for (unsigned int b = 0; b < state.contacts.size(); ++b)
+    if (state.node_position(state.tables.boundary_nodes[b].node)[1] > 24.99 &&
+        state.tables.boundary_nodes[b].free_surface)
+      state.contacts[b].tool[0] = 0;
+  const auto worst = [&] {
+    double share = 0;
+    for (const BoundaryEdge &edge : state.tables.edges)
+      if (state.contacts[edge.boundary_nodes[2]].active())
+        for (const double s : { 0.25, 0.75 })
+          {
+            const Point a = state.node_position(edge.nodes[0]),
+                        b = state.node_position(edge.nodes[1]),
+                        m = state.node_position(edge.nodes[2]);
+            const Point x((1 - s) * (1 - 2 * s) * a + s * (2 * s - 1) * b + 4 * s * (1 - s) * m);
+            std::array<tools::Contact, 2> found;
+            if (tool.find(x, 10, found) > 0)
+              share = std::max(share, std::abs(found[0].gap) / a.distance(b));
+          }
+    return share;
+  };
+  EXPECT_GT(worst(), 0.004);
+  unsigned int n = 0;
+  while (meshing::adapt(problem.scene, state, meshing::Marking()).changed)
+    ASSERT_LT(++n, 6u);
+  EXPECT_GT(n, 0u);
+  EXPECT_LT(worst(), 0.0021);
+}
+
+
+// Cells in a region are as small as it says, one that moves with a tool is where the tool is, and
+// the region is left as it was when it has passed.
+TEST(Adapt, regions)
+{
+  FlowProblem problem(
+      cylinder(5, perfectly_plastic(100), { "Law = none" }) + refinement(0, 0.9, 1) +
+      Entries{ "Regions = core, rim", "Region core/Lower corner = 0, 0",
+               "Region core/Upper corner = 4, 4", "Region core/Level = 3",
+               "Region rim/Lower corner = 20.5, 24.5", "Region rim/Upper corner = 30, 26",
+               "Region rim/Element size = 1.3", "Region rim/Moves with = upper" });
+  State &state  = problem.state;
+  auto   solver = std::make_unique<solvers::FlowSolver>(problem.scene, state);
+  process::adapt_at_start(problem.scene, state, solver, 1e-3);
+  const auto check = [&](const double top) {
+    for (unsigned int row = 0; row < state.tables.cells.size(); ++row)
+      {
+        const auto &nodes = state.tables.cells[row];
+        const Point low = state.node_position(nodes[0]), high = state.node_position(nodes[3]);
+        const auto  inside = [&](const Point &a, const Point &b) {
+          return low[0] < b[0] - 1e-9 && high[0] > a[0] + 1e-9 && low[1] < b[1] - 1e-9 &&
+                 high[1] > a[1] + 1e-9;
+        };
+        const double size = std::max(high[0] - low[0], high[1] - low[1]);
+        if (inside(Point(0, 0), Point(4, 4)))
+          EXPECT_LE(size, 5. / 8 + 1e-9);
+        if (inside(Point(20.5, top - 0.5), Point(30, top + 1)))
+          EXPECT_LE(size, 1.3);
+      }
+  };
+  check(25);
+  EXPECT_GT(state.tables.cells.size(), 100u);
+  state.time = 40; // the tool has gone 10 mm down, the body stays: the box is deeper inside it
+  while (meshing::adapt(problem.scene, state, meshing::Marking()).changed)
+    ;
+  check(15);
+}
+
+
 // Frictionless upsetting is exact on every mesh, so a change of the mesh must not show.
 TEST(Adapt, patch_test_stays_exact)
 {

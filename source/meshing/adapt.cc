@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <cstring>
+#include <limits>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/distributed/grid_refinement.h>
 #include <deal.II/distributed/solution_transfer.h>
 
 #include <axiforge/meshing/adapt.h>
+#include <axiforge/meshing/carried_cell.h>
+#include <axiforge/meshing/geometry_marks.h>
 #include <axiforge/state/measures.h>
 #include <axiforge/state/recovery.h>
 
@@ -16,66 +19,16 @@ namespace axiforge::meshing
 
   namespace
   {
-    /// Everything that stands at the Gauss points of a cell: strain, stress (4), mean stress, rate,
-    /// flow stress.
-    constexpr unsigned int n_quantities = 8;
-    using CellQuantities                = std::array<std::array<double, 9>, n_quantities>;
-
-    CellQuantities quantities_of(const State &state, const unsigned int cell)
-    {
-      const CellHistory &history = state.cell_history[cell];
-      CellQuantities     all;
-      for (unsigned int q = 0; q < 9; ++q)
-        {
-          all[0][q] = state.strain.local_element(state.tables.first_strain_dof[cell] + q);
-          for (unsigned int c = 0; c < 4; ++c)
-            all[1 + c][q] = history.stress[q][c];
-          all[5][q] = history.mean_stress[q];
-          all[6][q] = history.strain_rate[q];
-          all[7][q] = history.flow_stress[q];
-        }
-      return all;
-    }
-
-
-    void set_quantities(State &state, const unsigned int cell, const CellQuantities &all)
-    {
-      CellHistory &history = state.cell_history[cell];
-      double       mean    = 0;
-      for (unsigned int q = 0; q < 9; ++q)
-        {
-          state.strain.local_element(state.tables.first_strain_dof[cell] + q) = all[0][q];
-          for (unsigned int c = 0; c < 4; ++c)
-            history.stress[q][c] = all[1 + c][q];
-          history.mean_stress[q] = all[5][q];
-          history.strain_rate[q] = all[6][q];
-          history.flow_stress[q] = all[7][q];
-          mean += all[5][q] / 9;
-        }
-      history.pressure = { { mean, 0, 0 } }; // the next solve starts from it
-    }
-
-
-    /// The polynomial of the cell at a reference point, kept in the range of its nine values.
-    double continued(const State &state, const std::array<double, 9> &values, const Point &at)
-    {
-      double sum = 0;
-      for (unsigned int q = 0; q < 9; ++q)
-        sum += state.history_element.shape_value(q, at) * values[q];
-      const auto range = std::minmax_element(values.begin(), values.end());
-      return std::clamp(sum, *range.first, *range.second);
-    }
-
-
     const Point &gauss_point(const State &state, const unsigned int q)
     {
       return state.history_element.get_unit_support_points()[q];
     }
 
 
-    std::vector<char> packed(const std::vector<CellQuantities> &cells)
+    std::vector<char> packed(const std::vector<CarriedCell> &cells)
     {
-      std::vector<char> bytes(cells.size() * sizeof(CellQuantities));
+      static_assert(std::is_trivially_copyable_v<CarriedCell>);
+      std::vector<char> bytes(cells.size() * sizeof(CarriedCell));
       std::memcpy(bytes.data(), cells.data(), bytes.size());
       return bytes;
     }
@@ -144,49 +97,119 @@ namespace axiforge::meshing
     }
 
 
-    /// Puts surface nodes that are inside a tool on its profile, and finds the contacts of all
-    /// nodes.
-    void find_contacts(const scene::Scene &scene, State &state)
+    /**
+     * The tool that each boundary node of the new mesh touches. A node of the old mesh keeps its
+     * own; a new one, which is the middle of an edge between old nodes, touches the tool that both
+     * of them touch.
+     * @param known per owned side, what its old nodes touch
+     */
+    struct Touching
     {
-      const double touching = 1e-7 * scene.size;
+      std::vector<unsigned int> tool;   ///< no_tool: none
+      std::vector<bool>         is_new; ///< per boundary node
+    };
+
+    Touching find_touching(const scene::Scene             &scene,
+                           const State                    &state,
+                           const std::vector<CarriedSide> &carried_sides)
+    {
+      // Every rank tells what it knows of its own edges: 0 nothing, 1 open, 2 + tool.
+      Field known(state.velocity);
+      known = 0;
+      for (unsigned int e = 0; e < state.tables.edges.size(); ++e)
+        if (carried_sides[e].on_boundary)
+          for (unsigned int a = 0; a < 3; ++a)
+            if (const unsigned int tool = carried_sides[e].tool[a]; tool != new_node)
+              known.local_element(2 * state.tables.edges[e].nodes[a]) =
+                  tool == no_tool ? 1. : 2. + tool;
+      known.compress(VectorOperation::max);
+      known.update_ghost_values();
+
+      Touching touching;
+      for (const BoundaryNode &node : state.tables.boundary_nodes)
+        {
+          const double value = known.local_element(2 * node.node);
+          touching.is_new.push_back(value == 0);
+          touching.tool.push_back(value < 2 ? no_tool : static_cast<unsigned int>(value - 2));
+        }
+      // The contacts may be those that a step will end with: it has to touch now.
+      const auto touches_now = [&](const unsigned int b, const unsigned int tool) {
+        std::array<tools::Contact, 2> found;
+        return scene.tools[tool].profile.find(
+                   Point(state.node_position(state.tables.boundary_nodes[b].node) -
+                         scene.tools[tool].motion.displacement(state.time)),
+                   1e-6 * scene.size, found) > 0;
+      };
+      const std::vector<unsigned int> old = touching.tool;
+      for (const BoundaryEdge &edge : state.tables.edges)
+        {
+          const auto &[begin, end, middle] = edge.boundary_nodes;
+          const unsigned int tool          = old[begin];
+          if (touching.is_new[middle] && tool != no_tool && old[end] == tool &&
+              touches_now(begin, tool) && touches_now(end, tool))
+            touching.tool[middle] = tool;
+        }
+      return touching;
+    }
+
+
+    /// Slip of a node along its first contact [mm/s].
+    double slip_of(const scene::Scene &scene, const State &state, const unsigned int b)
+    {
+      const NodeContact &contact = state.contacts[b];
+      const Vector2      speed   = scene.tools[contact.tool[0]].motion.velocity(state.time);
+      const Vector2      tangent({ -contact.normal[0][1], contact.normal[0][0] });
+      double             slip = 0;
+      for (unsigned int c = 0; c < 2; ++c)
+        slip +=
+            (state.velocity.local_element(2 * state.tables.boundary_nodes[b].node + c) - speed[c]) *
+            tangent[c];
+      return slip;
+    }
+
+
+    /// Puts new surface nodes between touching ones, and those inside a tool, on its profile, and
+    /// fills the contacts of all nodes.
+    void find_contacts(const scene::Scene &scene, State &state, const Touching &touching)
+    {
+      const double close = 1e-7 * scene.size;
       for (unsigned int b = 0; b < state.tables.boundary_nodes.size(); ++b)
         {
           const BoundaryNode &node    = state.tables.boundary_nodes[b];
           NodeContact        &contact = state.contacts[b];
-          if (!node.free_surface)
+          if (!node.free_surface || (touching.tool[b] == no_tool && !touching.is_new[b]))
             continue;
-          for (unsigned int tool = 0; tool < scene.tools.size(); ++tool)
-            {
-              const Vector2 shift = scene.tools[tool].motion.displacement(state.time);
-              const Vector2 speed = scene.tools[tool].motion.velocity(state.time);
-              std::array<tools::Contact, 2> found;
-              const unsigned int            n = scene.tools[tool].profile.find(
-                             state.node_position(node.node) - shift, touching, found);
-              for (unsigned int i = 0; i < n; ++i)
-                {
-                  const unsigned int slot = contact.active() ? 1 : 0;
-                  if (contact.tool[slot] != no_tool)
-                    continue;
-                  contact.tool[slot]   = tool;
-                  contact.face[slot]   = found[i].face;
-                  contact.normal[slot] = found[i].normal;
-                  if (found[i].gap < 0 && i == 0)
-                    for (unsigned int c = 0; c < 2; ++c)
-                      state.position.local_element(2 * node.node + c) -=
-                          found[i].gap * found[i].normal[c];
-                  if (slot == 0)
-                    {
-                      Vector2 relative;
+          // The tool that it touches for sure comes first.
+          for (const bool sure : { true, false })
+            for (unsigned int tool = 0; tool < scene.tools.size(); ++tool)
+              {
+                if ((touching.tool[b] == tool) != sure)
+                  continue;
+                const Vector2 shift = scene.tools[tool].motion.displacement(state.time);
+                std::array<tools::Contact, 2> found;
+                const unsigned int            n = scene.tools[tool].profile.find(
+                               Point(state.node_position(node.node) - shift),
+                    sure ? std::numeric_limits<double>::max() : close, found);
+                for (unsigned int i = 0; i < n; ++i)
+                  {
+                    const unsigned int slot = contact.active() ? 1 : 0;
+                    if (contact.tool[slot] != no_tool || (i > 0 && found[i].gap > close))
+                      continue;
+                    contact.tool[slot]   = tool;
+                    contact.face[slot]   = found[i].face;
+                    contact.normal[slot] = found[i].normal;
+                    if (i == 0 && touching.is_new[b] && (sure || found[i].gap < 0))
                       for (unsigned int c = 0; c < 2; ++c)
-                        relative[c] = state.velocity.local_element(2 * node.node + c) - speed[c];
-                      contact.slip =
-                          relative * Vector2({ -contact.normal[0][1], contact.normal[0][0] });
-                    }
-                }
-            }
+                        state.position.local_element(2 * node.node + c) -=
+                            found[i].gap * found[i].normal[c];
+                  }
+              }
+          if (contact.active())
+            contact.slip = slip_of(scene, state, b);
         }
       state.position.update_ghost_values();
-      for (unsigned int e = 0; e < state.tables.edges.size(); ++e)
+      // Nothing is "the last step" before the first one.
+      for (unsigned int e = 0; e < state.tables.edges.size() && state.step > 0; ++e)
         for (unsigned int a = 0; a < 3; ++a)
           {
             const NodeContact &contact = state.contacts[state.tables.edges[e].boundary_nodes[a]];
@@ -204,6 +227,89 @@ namespace axiforge::meshing
           return state.strain.local_element(state.tables.first_strain_dof[cell] + q);
         });
       return MPI::sum(sum, state.communicator);
+    }
+
+
+    /// Does what the flags of the cells say and carries all of the state over.
+    void change_mesh(const scene::Scene &scene, State &state, AdaptReport &report)
+    {
+      const std::vector<unsigned int> rows = rows_of_cells(state);
+      state.triangulation.prepare_coarsening_and_refinement();
+      bool any = false;
+      for (const auto &cell : state.triangulation.active_cell_iterators())
+        any |= cell->is_locally_owned() && (cell->refine_flag_set() || cell->coarsen_flag_set());
+      report.cells = state.tables.n_global_cells;
+      if (!MPI::logical_or(any, state.communicator))
+        return;
+
+      const double volume = measure(state).volume, strain = strain_integral(state);
+
+      parallel::distributed::SolutionTransfer<2, Field> transfer(state.flow_dofs);
+      state.position.update_ghost_values();
+      state.velocity.update_ghost_values();
+      transfer.prepare_for_coarsening_and_refinement(
+          std::vector<const Field *>{ &state.position, &state.velocity });
+
+      using Cell   = parallel::distributed::Triangulation<2>::cell_iterator;
+      using Status = parallel::distributed::Triangulation<2>::CellStatus;
+      const std::vector<std::array<unsigned int, 4>> old_edges = edges_of_cells(state);
+      const unsigned int handle = state.triangulation.register_data_attach(
+          [&](const Cell &cell, const Status status) {
+            std::vector<CarriedCell> cells;
+            const auto               add = [&](const auto &active) {
+              const unsigned int row = rows[active->active_cell_index()];
+              cells.push_back(carry(state, row, old_edges[row]));
+            };
+            if (status == parallel::distributed::Triangulation<2>::CELL_COARSEN)
+              for (unsigned int c = 0; c < cell->n_children(); ++c)
+                add(cell->child(c));
+            else
+              add(cell);
+            return packed(cells);
+          },
+          true);
+      state.triangulation.execute_coarsening_and_refinement();
+
+      state.setup_dofs();
+      state.position.zero_out_ghost_values();
+      state.velocity.zero_out_ghost_values();
+      std::vector<Field *> fields = { &state.position, &state.velocity };
+      transfer.interpolate(fields);
+      state.hanging_nodes.distribute(state.position);
+      state.hanging_nodes.distribute(state.velocity);
+      state.position.update_ghost_values();
+      state.velocity.update_ghost_values();
+      state.setup_tables();
+
+      const std::vector<unsigned int>                new_rows  = rows_of_cells(state);
+      const std::vector<std::array<unsigned int, 4>> new_edges = edges_of_cells(state);
+      std::vector<CarriedSide>                       sides(state.tables.edges.size());
+      const auto place = [&](const auto &active, const CarriedCell &carried) {
+        const unsigned int row = new_rows[active->active_cell_index()];
+        put_down(carried, state, row, new_edges[row]);
+        for (unsigned int s = 0; s < 4; ++s)
+          if (new_edges[row][s] != no_tool)
+            sides[new_edges[row][s]] = carried.sides[s];
+      };
+      state.triangulation.notify_ready_to_unpack(
+          handle, [&](const Cell &cell, const Status status,
+                      const boost::iterator_range<std::vector<char>::const_iterator> &bytes) {
+            std::array<CarriedCell, 4> old;
+            std::memcpy(old.data(), &*bytes.begin(), bytes.size());
+            if (status == parallel::distributed::Triangulation<2>::CELL_PERSIST)
+              place(cell, old[0]);
+            else if (status == parallel::distributed::Triangulation<2>::CELL_REFINE)
+              for (unsigned int c = 0; c < cell->n_children(); ++c)
+                place(cell->child(c), child_of(state, old[0], c));
+            else
+              place(cell, parent_of(state, old));
+          });
+
+      find_contacts(scene, state, find_touching(scene, state, sides));
+      report.changed       = true;
+      report.cells         = state.tables.n_global_cells;
+      report.volume_change = measure(state).volume / volume - 1;
+      report.strain_change = strain > 0 ? strain_integral(state) / strain - 1 : 0;
     }
   } // namespace
 
@@ -266,111 +372,46 @@ namespace axiforge::meshing
 
   AdaptReport adapt(const scene::Scene &scene, State &state)
   {
-    const scene::RefinementParameters &limits = scene.refinement;
-    AdaptReport                        report;
-    const dealii::Vector<float>        indicators = error_indicators(
-               state, scene.flow.regularisation * scene.characteristic_rate, report.estimated_error);
+    Marking marking;
+    marking.refine_fraction  = scene.refinement.refine_fraction;
+    marking.coarsen_fraction = scene.refinement.coarsen_fraction;
+    double estimated_error   = 0;
+    marking.indicators       = error_indicators(
+              state, scene.flow.regularisation * scene.characteristic_rate, estimated_error);
+    AdaptReport report     = adapt(scene, state, marking);
+    report.estimated_error = estimated_error;
+    return report;
+  }
 
-    parallel::distributed::GridRefinement::refine_and_coarsen_fixed_fraction(
-        state.triangulation, indicators, limits.refine_fraction, limits.coarsen_fraction);
+
+  AdaptReport adapt(const scene::Scene &scene, State &state, const Marking &marking)
+  {
+    const scene::RefinementParameters &limits = scene.refinement;
+    if (marking.indicators.size() > 0)
+      parallel::distributed::GridRefinement::refine_and_coarsen_fixed_fraction(
+          state.triangulation, marking.indicators, marking.refine_fraction,
+          marking.coarsen_fraction);
     const std::vector<unsigned int> rows    = rows_of_cells(state);
     const bool                      is_full = state.tables.n_global_cells >= limits.most_cells;
     for (const auto &cell : state.triangulation.active_cell_iterators())
-      {
-        if (!cell->is_locally_owned())
-          continue;
-        const auto  &nodes = state.tables.cells[rows[cell->active_cell_index()]];
-        const double size =
-            std::min(state.node_position(nodes[0]).distance(state.node_position(nodes[3])),
-                     state.node_position(nodes[1]).distance(state.node_position(nodes[2])));
-        if (is_full || cell->level() >= static_cast<int>(limits.largest_level) ||
-            size < 2 * limits.smallest_size)
-          cell->clear_refine_flag();
-      }
+      if (cell->is_locally_owned() &&
+          (is_full || cell->level() >= static_cast<int>(limits.largest_level) ||
+           shorter_diagonal(state, rows[cell->active_cell_index()]) < 2 * limits.smallest_size))
+        cell->clear_refine_flag();
+    mark_by_geometry(scene, state);
+    AdaptReport report;
     report.refused = keep_outline(state);
-    state.triangulation.prepare_coarsening_and_refinement();
-    bool any = false;
-    for (const auto &cell : state.triangulation.active_cell_iterators())
-      any |= cell->is_locally_owned() && (cell->refine_flag_set() || cell->coarsen_flag_set());
-    report.cells = state.tables.n_global_cells;
-    if (!MPI::logical_or(any, state.communicator))
-      return report;
-
-    const double volume = measure(state).volume, strain = strain_integral(state);
-
-    parallel::distributed::SolutionTransfer<2, Field> transfer(state.flow_dofs);
-    state.position.update_ghost_values();
-    state.velocity.update_ghost_values();
-    transfer.prepare_for_coarsening_and_refinement(
-        std::vector<const Field *>{ &state.position, &state.velocity });
-
-    using Cell                = parallel::distributed::Triangulation<2>::cell_iterator;
-    using Status              = parallel::distributed::Triangulation<2>::CellStatus;
-    const unsigned int handle = state.triangulation.register_data_attach(
-        [&](const Cell &cell, const Status status) {
-          std::vector<CellQuantities> cells;
-          if (status == parallel::distributed::Triangulation<2>::CELL_COARSEN)
-            for (unsigned int c = 0; c < cell->n_children(); ++c)
-              cells.push_back(quantities_of(state, rows[cell->child(c)->active_cell_index()]));
-          else
-            cells.push_back(quantities_of(state, rows[cell->active_cell_index()]));
-          return packed(cells);
-        },
-        true);
-    state.triangulation.execute_coarsening_and_refinement();
-
-    state.setup_dofs();
-    state.position.zero_out_ghost_values();
-    state.velocity.zero_out_ghost_values();
-    std::vector<Field *> fields = { &state.position, &state.velocity };
-    transfer.interpolate(fields);
-    state.hanging_nodes.distribute(state.position);
-    state.hanging_nodes.distribute(state.velocity);
-    state.position.update_ghost_values();
-    state.velocity.update_ghost_values();
-    state.setup_tables();
-
-    const std::vector<unsigned int> new_rows = rows_of_cells(state);
-    state.triangulation.notify_ready_to_unpack(
-        handle, [&](const Cell &cell, const Status status,
-                    const boost::iterator_range<std::vector<char>::const_iterator> &bytes) {
-          std::vector<CellQuantities> old(bytes.size() / sizeof(CellQuantities));
-          std::memcpy(old.data(), &*bytes.begin(), bytes.size());
-          if (status == parallel::distributed::Triangulation<2>::CELL_PERSIST)
-            set_quantities(state, new_rows[cell->active_cell_index()], old[0]);
-          else if (status == parallel::distributed::Triangulation<2>::CELL_REFINE)
-            for (unsigned int c = 0; c < cell->n_children(); ++c)
-              {
-                CellQuantities all;
-                for (unsigned int q = 0; q < 9; ++q)
-                  {
-                    const Point at =
-                        GeometryInfo<2>::child_to_cell_coordinates(gauss_point(state, q), c);
-                    for (unsigned int i = 0; i < n_quantities; ++i)
-                      all[i][q] = continued(state, old[0][i], at);
-                  }
-                set_quantities(state, new_rows[cell->child(c)->active_cell_index()], all);
-              }
-          else
-            {
-              CellQuantities all;
-              for (unsigned int q = 0; q < 9; ++q)
-                {
-                  const Point       &at     = gauss_point(state, q);
-                  const unsigned int child  = GeometryInfo<2>::child_cell_from_point(at);
-                  const Point        inside = GeometryInfo<2>::cell_to_child_coordinates(at, child);
-                  for (unsigned int i = 0; i < n_quantities; ++i)
-                    all[i][q] = continued(state, old[child][i], inside);
-                }
-              set_quantities(state, new_rows[cell->active_cell_index()], all);
-            }
-        });
-
-    find_contacts(scene, state);
-    report.changed       = true;
-    report.cells         = state.tables.n_global_cells;
-    report.volume_change = measure(state).volume / volume - 1;
-    report.strain_change = strain > 0 ? strain_integral(state) / strain - 1 : 0;
+    change_mesh(scene, state, report);
     return report;
+  }
+
+
+  void refine_everywhere(const scene::Scene &scene, State &state)
+  {
+    for (const auto &cell : state.triangulation.active_cell_iterators())
+      if (cell->is_locally_owned())
+        cell->set_refine_flag();
+    AdaptReport report;
+    change_mesh(scene, state, report);
   }
 } // namespace axiforge::meshing

@@ -61,6 +61,12 @@ namespace axiforge::output
                                 { "wall_solve_s", r.times.solve } });
       if (scene.process.fill_radius > 0)
         list.emplace_back("fill", r.fill);
+      if (scene.accuracy.estimated)
+        list.insert(list.end(), { { "error_space", r.errors.space },
+                                  { "error_time", r.errors.time },
+                                  { "error_regularisation", r.errors.regularisation },
+                                  { "error_nonlinear", r.errors.nonlinear },
+                                  { "error_total", r.errors.total() } });
       if (scene.remeshing.enabled)
         list.insert(list.end(), { { "remeshings", r.remeshings },
                                   { "remeshing_volume_jump_mm3", r.remeshing_volume_jump },

@@ -3,6 +3,7 @@
 
 #include <axiforge/base/errors.h>
 #include <axiforge/meshing/remesh.h>
+#include <axiforge/process/accuracy.h>
 #include <axiforge/process/end_condition.h>
 #include <axiforge/process/mesh_change.h>
 #include <axiforge/process/operation.h>
@@ -119,7 +120,8 @@ namespace axiforge::process
           adapt_at_start(scene, state, solver, choose_step_size(scene, state, record));
         while (ended_by(scene, record).empty())
           {
-            record                       = step(scene, state, solver, progress, record);
+            record = step(scene, state, solver, progress, record);
+            estimate_errors(scene, state, record);
             record.remeshings            = state.remeshing.count;
             record.remeshing_volume_jump = state.remeshing.volume_jump;
             record.remeshing_strain_jump = state.remeshing.strain_jump;
@@ -130,7 +132,7 @@ namespace axiforge::process
             sum.add(record.times);
             if (on_step)
               on_step(scene, record);
-            progress.mesh(adapt_if_due(scene, state, solver));
+            progress.mesh(adapt_if_due(scene, state, solver, record));
             if (checkpoints.after_step(state, record))
               progress.say(fmt::format("checkpoint after step {}", state.step));
           }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <axiforge/process/accuracy.h>
 #include <axiforge/process/progress.h>
 
 namespace axiforge::process
@@ -59,10 +60,10 @@ namespace axiforge::process
     const double left =
         timer.wall_time() / (record.time - start_time) * (scene.end_time() - record.time);
     std::cout << fmt::format(
-                     "step {:4}  t {:.5g} s  stroke {:.5g} mm{}  iterations {}  cells {}  left "
+                     "step {:4}  t {:.5g} s  stroke {:.5g} mm{}  iterations {}  cells {}{}  left "
                      "{}{}\n",
                      record.step, record.time, record.stroke, forces, record.iterations,
-                     record.cells, duration(left),
+                     record.cells, describe_errors(scene, record), duration(left),
                      record.repeats ? fmt::format("  (repeated {} times)", record.repeats) : "")
               << std::flush;
   }
@@ -111,7 +112,7 @@ namespace axiforge::process
                              100 * (sum.assembly + sum.residual) / total,
                              100 * sum.contact / total, 100 * sum.factor / total,
                              100 * sum.solve / total, analyse)
-              << "Results: " << folder << '\n'
+              << summary_of_errors(scene, state) << "Results: " << folder << '\n'
               << std::flush;
   }
 

@@ -2,6 +2,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <axiforge/base/errors.h>
+#include <axiforge/process/accuracy.h>
 #include <axiforge/process/end_condition.h>
 #include <axiforge/process/step.h>
 #include <axiforge/state/fill.h>
@@ -17,6 +18,8 @@ namespace axiforge::process
 
     /// A step that goes beyond the end of the operation is cut so many times at most.
     constexpr unsigned int most_cuts = 12;
+    /// With a target accuracy a step may be so many times as long as the usual one.
+    constexpr double largest_driven = 5;
 
     /// Time in which the nodes of some cell move against each other by its own size [s].
     double shortest_distortion_time(const State &state)
@@ -66,7 +69,10 @@ namespace axiforge::process
       if (limits.time_step > 0)
         return limits.time_step;
       const Measures size = measure(state);
-      return limits.largest_reduction * (size.highest - size.lowest) / fastest(scene, state.time);
+      // What a target accuracy allows may be longer than the usual step, but not without limit.
+      const double factor = scene.accuracy.driven() && state.step > 0 ? largest_driven : 1;
+      return factor * limits.largest_reduction * (size.highest - size.lowest) /
+             fastest(scene, state.time);
     }
 
 
@@ -111,6 +117,8 @@ namespace axiforge::process
           step = std::min(step, limits.largest_strain_increment / last.largest_strain_rate);
         step = std::min(step, limits.largest_motion * shortest_distortion_time(state));
       }
+    if (state.step > 0)
+      step = std::min(step, step_for_target(scene, last));
     if (step < limits.smallest_step * plain_step(scene, state))
       throw ComputationError(fmt::format(
           "The run can't go on at time {:.6g} s, stroke {:.6g} mm, step {}: the flow has become so "
@@ -140,6 +148,8 @@ namespace axiforge::process
       {
         solvers::FlowResult result = solver.solve(time_step);
         iterations += result.record.iterations;
+        if (result.converged && scene.accuracy.estimated)
+          result.record.errors.time = time_error(scene, state, solver, result, time_step);
         times.add(result.record.times);
         if (result.converged)
           {

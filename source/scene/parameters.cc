@@ -176,6 +176,17 @@ namespace axiforge::scene
         "Cells are not divided into smaller ones than this [mm] (their shorter diagonal). "
         "0: not used.",
         Patterns::Double(0));
+    prm.add_parameter(
+        "Largest chord error", largest_chord_error,
+        "A cell is divided if its edge between touching nodes is off the tool's profile by more "
+        "than this share of the edge's length: a fillet, or surface that folds over. 0: not used.",
+        Patterns::Double(0));
+    prm.add_parameter(
+        "Edges per quarter circle", edges_per_quarter,
+        "So many edges of the surface there should be along a quarter of a circle with the radius "
+        "of curvature of the tool that it touches. 3 keeps a curved edge within 1e-4 of the "
+        "radius. 0: not used.",
+        Patterns::Double(0));
   }
 
 
@@ -372,6 +383,10 @@ namespace axiforge::scene
         "Names of operations that follow each other, separated by commas; each has its section "
         "'Operation NAME' with any sections and entries of a scene but the workpiece's: what "
         "stands in it goes over what stands outside. Empty: the scene is one operation.");
+    prm.add_parameter(
+        "Regions", region_names,
+        "Names of boxes with finer cells, separated by commas; each has its section 'Region NAME'. "
+        "They need \"Refinement/Enabled = true\" or a target accuracy.");
     prm.enter_subsection("Placement");
     placement.declare(prm);
     prm.leave_subsection();
@@ -391,6 +406,12 @@ namespace axiforge::scene
       {
         prm.enter_subsection("Boundary " + boundary.name);
         boundary.declare(prm);
+        prm.leave_subsection();
+      }
+    for (RegionParameters &region : regions)
+      {
+        prm.enter_subsection("Region " + region.name);
+        region.declare(prm);
         prm.leave_subsection();
       }
     prm.enter_subsection("Process");
@@ -417,6 +438,9 @@ namespace axiforge::scene
     prm.enter_subsection("Checkpoint");
     checkpoint.declare(prm);
     prm.leave_subsection();
+    prm.enter_subsection("Accuracy");
+    accuracy.declare(prm);
+    prm.leave_subsection();
   }
 
 
@@ -429,6 +453,7 @@ namespace axiforge::scene
       ParameterHandler names;
       names.add_parameter("Tools", tool_names);
       names.add_parameter("Boundaries", boundary_names);
+      names.add_parameter("Regions", region_names);
       file.parse(names, true);
     }
     for (const std::string &name : split_names("Tools", tool_names))
@@ -440,6 +465,11 @@ namespace axiforge::scene
       {
         boundaries.emplace_back();
         boundaries.back().name = name;
+      }
+    for (const std::string &name : split_names("Regions", region_names))
+      {
+        regions.emplace_back();
+        regions.back().name = name;
       }
     // add_parameter keeps addresses: the vectors must not grow from here on.
     declare(*handler);

@@ -166,6 +166,44 @@ namespace axiforge::scene
             "Move the tool's geometry back, or the workpiece");
       return tool;
     }
+
+
+    Region make_region(const RegionParameters  &parameters,
+                       const std::vector<Tool> &tools,
+                       const bool               refines)
+    {
+      const std::string section = "Region " + parameters.name;
+      if (!refines)
+        throw InputError::entry("Regions", parameters.name, "the mesh of this run stays as it is",
+                                "regions with \"Refinement/Enabled = true\" or a target accuracy",
+                                "Set it, or leave \"Regions\" empty");
+      Region region{ parameters.name, Point(parameters.lower), Point(parameters.upper),
+                     no_tool,         parameters.element_size, parameters.level };
+      for (unsigned int c = 0; c < 2; ++c)
+        if (!(region.lower[c] < region.upper[c]))
+          throw InputError::entry(
+              section + "/Upper corner", fmt::format("{}, {}", region.upper[0], region.upper[1]),
+              fmt::format("it is not above the lower corner {}, {} in {}", region.lower[0],
+                          region.lower[1], c == 0 ? "r" : "z"),
+              "larger coordinates \"r, z\" [mm] than those of the lower corner");
+      if (region.element_size == 0 && region.level == 0)
+        throw InputError::entry(
+            section + "/Element size", "0",
+            "the region says neither how large its cells may be nor their level",
+            "a size [mm], or a level", "Give one of the two");
+      std::vector<std::string> names;
+      for (unsigned int i = 0; i < tools.size(); ++i)
+        {
+          names.push_back(tools[i].name);
+          if (tools[i].name == parameters.moves_with)
+            region.tool = i;
+        }
+      if (!parameters.moves_with.empty() && region.tool == no_tool)
+        throw InputError::entry(section + "/Moves with", parameters.moves_with,
+                                "this is not a tool", list(names),
+                                "Name one of them, or leave the entry empty");
+      return region;
+    }
   } // namespace
 
 
@@ -195,6 +233,7 @@ namespace axiforge::scene
       , remeshing(parameters.remeshing)
       , output(parameters.output)
       , checkpoint(parameters.checkpoint)
+      , accuracy(parameters.accuracy)
       , driving_tool(no_tool)
       , characteristic_speed(0)
       , size(std::max(outline.upper[0] - outline.lower[0], outline.upper[1] - outline.lower[1]))
@@ -295,6 +334,12 @@ namespace axiforge::scene
                                 "this is not a tool that moves", list(moving),
                                 "Name one of them, or leave the entry empty");
       }
+
+    refinement.enabled |= accuracy.driven();
+    if (accuracy.driven())
+      flow.tolerance = std::min(flow.tolerance, 0.01 * accuracy.target);
+    for (const RegionParameters &region : parameters.regions)
+      regions.push_back(make_region(region, tools, refinement.enabled));
 
     if (flow.iterated() && flow.penalty < 10 / flow.regularisation)
       throw InputError::entry("Flow solver/Penalty", fmt::format("{}", flow.penalty),

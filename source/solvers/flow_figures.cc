@@ -52,6 +52,8 @@ namespace axiforge::solvers
     record_boundaries(record);
     record.power_residual = record.power_tools + record.power_boundaries - record.power_plastic -
                             record.power_friction - record.power_contact - record.power_volume;
+    if (scene.accuracy.estimated)
+      estimate_solver_errors(record);
 
     result.contacts = contact->nodes;
     result.cell_history.resize(state.tables.cells.size());
@@ -75,6 +77,60 @@ namespace axiforge::solvers
             history.flow_stress[q] = point.flow_stress;
           }
       }
+  }
+
+
+  void FlowSolver::estimate_solver_errors(StepRecord &record) const
+  {
+    // What the rounding of the corner at rest leaves out of the dissipation, at this velocity.
+    double       left_out = 0;
+    CellGeometry geometry;
+    for (unsigned int cell = 0; cell < state.tables.cells.size(); ++cell)
+      {
+        CellDofs x;
+        load_cell(position, cell, x);
+        cell_geometry(x, geometry);
+        for (unsigned int q = 0; q < n_points; ++q)
+          {
+            const FlowPoint &point = points[n_points * cell + q];
+            const double     sharp =
+                scene.material.flow_stress(point.strain, point.effective_rate).value;
+            left_out += geometry.weight[q] * point.effective_rate *
+                        (sharp - 3 * point.viscosity * point.effective_rate);
+          }
+      }
+    for (const InterfaceFriction::Edge &edge : friction->edges())
+      if (edge.tool != no_tool)
+        {
+          const laws::Friction    &law  = scene.tools[edge.tool].friction;
+          const laws::FrictionKind kind = law.kind();
+          if (kind != laws::FrictionKind::shear && kind != laws::FrictionKind::coulomb)
+            continue;
+          for (unsigned int a = 0; a < 3; ++a)
+            if (edge.slip[a] != 0)
+              left_out += edge.force[a] * edge.slip[a] *
+                          (std::hypot(1, law.regularisation_velocity() / edge.slip[a]) - 1);
+        }
+
+    // The force that nothing balances, times the speed of its node.
+    const Field &forces     = balance();
+    double       unbalanced = 0;
+    for (unsigned int node = 0; node < state.tables.n_owned_nodes; ++node)
+      {
+        const Vector2 r = node_value(forces, node), v = node_value(velocity, node);
+        const int     f = frame_of_node[node];
+        for (unsigned int i = 0; i < 2; ++i)
+          if (f < 0)
+            unbalanced += std::abs(r[i] * v[i]);
+          else if (!frames[f].fixed[i])
+            unbalanced += std::abs((r * frames[f].axis[i]) * (v * frames[f].axis[i]));
+      }
+
+    const double power           = std::abs(record.power_tools + record.power_boundaries);
+    left_out                     = std::abs(MPI::sum(left_out, state.communicator));
+    unbalanced                   = MPI::sum(unbalanced, state.communicator);
+    record.errors.regularisation = power > 0 ? left_out / power : 0;
+    record.errors.nonlinear = power > 0 ? (unbalanced + std::abs(record.power_volume)) / power : 0;
   }
 
 

@@ -36,6 +36,19 @@ namespace axiforge
     archive(residual, assembly, factor, solve, contact, total);
   }
 
+  template <typename Archive> void visit(Archive &archive, ErrorEstimate &object)
+  {
+    auto &[space, time, regularisation, nonlinear] = object;
+    archive(space, time, regularisation, nonlinear);
+  }
+
+  template <typename Archive> void visit(Archive &archive, AccuracyRecord &object)
+  {
+    auto &[space_factor, checked, last_check, largest, sum, largest_total, time, steps, above] =
+        object;
+    archive(space_factor, checked, last_check, largest, sum, largest_total, time, steps, above);
+  }
+
   template <typename Archive> void visit(Archive &archive, StepRecord &object)
   {
     auto &[step, time, time_step, stroke, tools, boundaries, volume, relative_volume_change,
@@ -43,13 +56,13 @@ namespace axiforge
            power_volume, power_residual, largest_strain, largest_strain_rate, smallest_jacobian,
            smallest_vertex_jacobian, largest_radius, height, fill, cells, unknowns, iterations,
            set_changes, repeats, residual, divergence, times, remeshings, remeshing_volume_jump,
-           remeshing_strain_jump] = object;
+           remeshing_strain_jump, errors] = object;
     archive(step, time, time_step, stroke, tools, boundaries, volume, relative_volume_change,
             power_tools, power_boundaries, power_plastic, power_friction, power_contact,
             power_volume, power_residual, largest_strain, largest_strain_rate, smallest_jacobian,
             smallest_vertex_jacobian, largest_radius, height, fill, cells, unknowns, iterations,
             set_changes, repeats, residual, divergence, times, remeshings, remeshing_volume_jump,
-            remeshing_strain_jump);
+            remeshing_strain_jump, errors);
   }
 
   template <typename Archive> void visit(Archive &archive, ResultsProgress &object)
@@ -99,7 +112,8 @@ namespace axiforge
   template <typename Archive> void visit_numbers(Archive &archive, State &state)
   {
     archive(state.boundary_ids, state.time, state.step, state.last_time_step,
-            state.earlier_time_step, state.initial_volume, state.size, state.remeshing);
+            state.earlier_time_step, state.initial_volume, state.size, state.remeshing,
+            state.accuracy);
   }
 
   namespace
@@ -147,15 +161,19 @@ namespace axiforge
   } // namespace
 
 
-  void save_checkpoint(const State &state, const CheckpointExtras &extras, const std::string &path)
+  namespace
   {
-    BinaryWriter   mine;
-    portable::Part part = portable::locally_owned_part(state);
-    mine(part);
-    const std::vector<std::string> parts = gather_on_first_rank(state.communicator, mine.text);
-    on_first_rank(state.communicator, [&] {
+    /// All of a state and what goes with it, on the first rank.
+    std::string content_of(const State &state, const CheckpointExtras &extras)
+    {
+      BinaryWriter mine;
+      portable::Part part = portable::locally_owned_part(state);
+      mine(part);
+      const std::vector<std::string> parts = gather_on_first_rank(state.communicator, mine.text);
+      BinaryWriter                   content;
+      if (parts.empty())
+        return {};
       // The writer reads only.
-      BinaryWriter content;
       content(const_cast<CheckpointExtras &>(extras));
       visit_numbers(content, const_cast<State &>(state));
       portable::CoarseMesh mesh = portable::coarse_mesh(state);
@@ -163,13 +181,44 @@ namespace axiforge
       content.size_of(parts.size());
       for (const std::string &text : parts)
         content.text += text;
+      return content.text;
+    }
 
+
+    /// The same, read by all ranks.
+    CheckpointExtras fill_from(State &state, const std::string &content, const std::string &name)
+    {
+      BinaryReader         reader(content, name);
+      CheckpointExtras     extras;
+      portable::CoarseMesh mesh;
+      reader(extras);
+      visit_numbers(reader, state);
+      std::vector<portable::Part> parts;
+      reader(mesh, parts);
+      portable::rebuild(mesh, parts, state, name);
+      return extras;
+    }
+  } // namespace
+
+
+  void copy_state(const State &from, State &to)
+  {
+    std::string content = content_of(from, CheckpointExtras());
+    share_text_of_first_rank(from.communicator, content);
+    fill_from(to, content, "copy of the state");
+  }
+
+
+  void save_checkpoint(const State &state, const CheckpointExtras &extras, const std::string &path)
+  {
+    const std::string content = content_of(state, extras);
+    on_first_rank(state.communicator, [&] {
       BinaryWriter  head;
       std::uint32_t order = byte_order, version = format_version;
-      std::uint64_t size = content.text.size(), sum = checksum(content.text);
+      std::uint64_t size = content.size(), sum = checksum(content);
       head(order, version, size, sum);
       AtomicFile file(path);
-      file.stream() << magic << head.text << content.text;
+      file.stream() << magic << head.text << content;
       file.commit();
     });
   }
@@ -181,14 +230,6 @@ namespace axiforge
     on_first_rank(state.communicator, [&] { content = read_content(path); });
     share_text_of_first_rank(state.communicator, content);
 
-    BinaryReader         reader(content, path);
-    CheckpointExtras     extras;
-    portable::CoarseMesh mesh;
-    reader(extras);
-    visit_numbers(reader, state);
-    std::vector<portable::Part> parts;
-    reader(mesh, parts);
-    portable::rebuild(mesh, parts, state, path);
-    return extras;
+    return fill_from(state, content, path);
   }
 } // namespace axiforge

@@ -37,4 +37,18 @@ namespace axiforge::meshing
    * its profile. The FlowSolver has to be made anew if something changed. Collective.
    */
   AdaptReport adapt(const scene::Scene &scene, State &state);
+
+  /// Which cells are divided and joined.
+  struct Marking
+  {
+    dealii::Vector<float> indicators; ///< as of error_indicators(); empty: by the geometry alone
+    double                refine_fraction = 0, coarsen_fraction = 0; ///< of their sum
+  };
+
+  /// The same by given indicators. Whatever these say, cells are divided where the geometry of the
+  /// tools and the regions of the scene ask for it (geometry_marks.h).
+  AdaptReport adapt(const scene::Scene &scene, State &state, const Marking &marking);
+
+  /// Divides every cell, whatever the limits are.
+  void refine_everywhere(const scene::Scene &scene, State &state);
 } // namespace axiforge::meshing

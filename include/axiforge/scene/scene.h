@@ -15,6 +15,7 @@
 #include <axiforge/base/parameter_file.h>
 #include <axiforge/laws/friction.h>
 #include <axiforge/laws/material.h>
+#include <axiforge/scene/accuracy_parameters.h>
 #include <axiforge/scene/study_parameters.h>
 #include <axiforge/tools/motion.h>
 #include <axiforge/tools/profile.h>
@@ -91,14 +92,16 @@ namespace axiforge::scene
   /// `subsection Refinement`
   struct RefinementParameters
   {
-    bool         enabled          = false;
-    unsigned int every_steps      = 5;
-    unsigned int start_cycles     = 0;
-    double       refine_fraction  = 0.3;
-    double       coarsen_fraction = 0.02;
-    unsigned int largest_level    = 3;
-    unsigned int most_cells       = 20000;
-    double       smallest_size    = 0;
+    bool         enabled             = false;
+    unsigned int every_steps         = 5;
+    unsigned int start_cycles        = 0;
+    double       refine_fraction     = 0.3;
+    double       coarsen_fraction    = 0.02;
+    unsigned int largest_level       = 3;
+    unsigned int most_cells          = 20000;
+    double       smallest_size       = 0;
+    double       largest_chord_error = 0.01; ///< over the length of the edge
+    double       edges_per_quarter   = 3;    ///< of a circle of the tool
 
     void declare(dealii::ParameterHandler &prm);
   };
@@ -210,6 +213,8 @@ namespace axiforge::scene
     OutputParameters                output;
     StudyParameters                 study; ///< for `axiforge study` alone
     CheckpointParameters            checkpoint;
+    AccuracyParameters              accuracy;
+    std::vector<RegionParameters>   regions;
     std::string                     directory; ///< of the .prm: relative names are resolved there
 
     /// All entries with their values in effect and their texts, in .prm form.
@@ -221,7 +226,7 @@ namespace axiforge::scene
   private:
     void declare(dealii::ParameterHandler &prm);
 
-    std::string                               tool_names, boundary_names, operation_names;
+    std::string tool_names, boundary_names, operation_names, region_names;
     std::shared_ptr<dealii::ParameterHandler> handler;
   };
 
@@ -289,6 +294,8 @@ namespace axiforge::scene
     RemeshingParameters            remeshing;
     OutputParameters               output;
     CheckpointParameters           checkpoint;
+    Accuracy                       accuracy;
+    std::vector<Region>            regions;
 
     unsigned int
            driving_tool; ///< index of the tool whose travel is the stroke; no_tool without tools

@@ -103,6 +103,7 @@ namespace axiforge::solvers
     void record_tools(StepRecord &record);
     void record_powers(StepRecord &record);
     void record_boundaries(StepRecord &record);
+    void estimate_solver_errors(StepRecord &record) const;
 
     const scene::Scene &scene;
     const State        &state;

@@ -53,6 +53,10 @@ namespace axiforge
    */
   void save_checkpoint(const State &state, const CheckpointExtras &extras, const std::string &path);
 
+  /// Fills an empty state with all of another one, without a file: for what-if computations. On the
+  /// same ranks the copy goes on bit for bit. Collective.
+  void copy_state(const State &from, State &to);
+
   /**
    * Fills an empty state from a file. On as many ranks as have written it the state continues bit
    * for bit, else as far as the linear solvers agree. Collective.

@@ -16,6 +16,7 @@
 
 #include <axiforge/base/geometry.h>
 #include <axiforge/laws/smm_layer.h>
+#include <axiforge/state/accuracy_record.h>
 #include <axiforge/state/remeshing_record.h>
 
 namespace axiforge
@@ -147,6 +148,7 @@ namespace axiforge
     double       size              = 0; ///< largest extent of the workpiece at the start [mm]
 
     RemeshingRecord remeshing;
+    AccuracyRecord  accuracy;
 
     /// Takes mesh and unknowns away so that another mesh can take their place; time, step, volume,
     /// size and records stay. Collective.

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <axiforge/state/accuracy_record.h>
+
 namespace axiforge
 {
   /// What a tool feels and leaves in a step.
@@ -75,5 +77,7 @@ namespace axiforge
     /// Of all remeshings so far, see RemeshingRecord.
     unsigned int remeshings            = 0;
     double       remeshing_volume_jump = 0, remeshing_strain_jump = 0;
+
+    ErrorEstimate errors; ///< where the scene asks for them
   };
 } // namespace axiforge
