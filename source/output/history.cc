@@ -58,6 +58,9 @@ namespace axiforge::output
                                 { "wall_contact_s", r.times.contact },
                                 { "wall_factor_s", r.times.factor },
                                 { "wall_solve_s", r.times.solve } });
+      for (unsigned int i = 0; i < scene.gauges.size(); ++i)
+        list.emplace_back("gauge_" + scene.gauges[i].name + "_mm",
+                          i < r.gauges.size() ? r.gauges[i] : 0.);
       if (scene.remeshing.enabled)
         list.insert(list.end(), { { "remeshings", r.remeshings },
                                   { "remeshing_volume_jump_mm3", r.remeshing_volume_jump },

@@ -85,7 +85,8 @@ namespace axiforge::process
     /// Entries that say nothing about the body and what is done to it.
     bool may_differ(const std::string &path)
     {
-      for (const char *section : { "Output/", "Checkpoint/", "Time stepping/", "Flow solver/" })
+      for (const char *section :
+           { "Output/", "Checkpoint/", "Time stepping/", "Flow solver/", "Folding/" })
         if (path.compare(0, std::string(section).size(), section) == 0)
           return true;
       return path == "Title" || path == "Process/End stroke" || path == "Process/End time";
@@ -228,7 +229,7 @@ namespace axiforge::process
       return InputError::entry(
           entry, is, fmt::format("the checkpoint \"{}\" was written with \"{}\"", path, was),
           "the value of the checkpoint; only title, end of the run, time stepping, flow solver, "
-          "output and checkpoints may differ",
+          "folding, output and checkpoints may differ",
           "Put it back, or start without --resume");
     };
     for (const auto &[entry, value] : old_entries)

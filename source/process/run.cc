@@ -12,6 +12,7 @@
 #include <axiforge/meshing/remesh.h>
 #include <axiforge/output/results.h>
 #include <axiforge/process/checkpointing.h>
+#include <axiforge/process/fold_watch.h>
 #include <axiforge/process/mesh_change.h>
 #include <axiforge/process/run.h>
 #include <axiforge/process/step.h>
@@ -286,6 +287,7 @@ namespace axiforge::process
     StepRecord    record = resumed ? resumed->record : StepRecord();
     StepTimes     sum;
     Checkpointing checkpoints(scene, folder, parameters.print());
+    FoldWatch     folds(scene, quiet);
     progress.start(state);
     try
       {
@@ -302,6 +304,7 @@ namespace axiforge::process
             sum.add(record.times);
             if (options.on_step)
               options.on_step(scene, record);
+            folds.after_step(state, record);
             progress.mesh(adapt_if_due(scene, state, solver));
             if (checkpoints.after_step(state, record, results) && !quiet)
               std::cout << "checkpoint after step " << state.step << std::endl;

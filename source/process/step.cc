@@ -3,6 +3,7 @@
 
 #include <axiforge/base/errors.h>
 #include <axiforge/process/step.h>
+#include <axiforge/state/gauges.h>
 
 namespace axiforge::process
 {
@@ -160,6 +161,7 @@ namespace axiforge::process
                 record.smallest_jacobian        = size.smallest_jacobian;
                 record.smallest_vertex_jacobian = size.smallest_vertex_jacobian;
                 record.largest_strain           = largest_strain(state);
+                record.gauges                   = read_gauges(scene.gauges, state);
                 record.cells                    = state.tables.n_global_cells;
                 record.unknowns                 = state.n_unknowns();
                 record.repeats                  = repeats;

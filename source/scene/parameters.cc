@@ -291,6 +291,9 @@ namespace axiforge::scene
         "Boundaries", boundary_names,
         "Names of physical curves of the workpiece with a condition of their own; each "
         "has its section 'Boundary NAME'. Axis and symmetry need none.");
+    prm.add_parameter("Gauges", gauge_names,
+                      "Names of measurements of the shape, separated by commas; each has its "
+                      "section 'Gauge NAME' and its column gauge_NAME_mm in history.csv.");
     prm.enter_subsection("Workpiece");
     workpiece.declare_workpiece(prm);
     prm.leave_subsection();
@@ -309,6 +312,12 @@ namespace axiforge::scene
         boundary.declare(prm);
         prm.leave_subsection();
       }
+    for (GaugeParameters &gauge : gauges)
+      {
+        prm.enter_subsection("Gauge " + gauge.name);
+        gauge.declare(prm);
+        prm.leave_subsection();
+      }
     prm.enter_subsection("Process");
     process.declare(prm);
     prm.leave_subsection();
@@ -323,6 +332,9 @@ namespace axiforge::scene
     prm.leave_subsection();
     prm.enter_subsection("Remeshing");
     remeshing.declare(prm);
+    prm.leave_subsection();
+    prm.enter_subsection("Folding");
+    folding.declare(prm);
     prm.leave_subsection();
     prm.enter_subsection("Output");
     output.declare(prm);
@@ -345,6 +357,7 @@ namespace axiforge::scene
       ParameterHandler names;
       names.add_parameter("Tools", tool_names);
       names.add_parameter("Boundaries", boundary_names);
+      names.add_parameter("Gauges", gauge_names);
       file.parse(names, true);
     }
     for (const std::string &name : split_names("Tools", tool_names))
@@ -356,6 +369,11 @@ namespace axiforge::scene
       {
         boundaries.emplace_back();
         boundaries.back().name = name;
+      }
+    for (const std::string &name : split_names("Gauges", gauge_names))
+      {
+        gauges.emplace_back();
+        gauges.back().name = name;
       }
     // add_parameter keeps addresses: the vectors must not grow from here on.
     declare(*handler);

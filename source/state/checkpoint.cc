@@ -18,7 +18,7 @@ namespace axiforge
   namespace
   {
     /// To be raised with every change of what a file holds.
-    constexpr std::uint32_t format_version = 1;
+    constexpr std::uint32_t format_version = 2;
     const std::string       magic          = "AXIFORGE CHECKPOINT\n";
     constexpr std::uint32_t byte_order     = 0x01020304;
 
@@ -106,18 +106,18 @@ namespace axiforge
 
   template <typename Archive> void visit(Archive &archive, StepRecord &object)
   {
-    auto &[step, time, time_step, stroke, tools, boundaries, volume, relative_volume_change,
+    auto &[step, time, time_step, stroke, tools, boundaries, gauges, volume, relative_volume_change,
            power_tools, power_boundaries, power_plastic, power_friction, power_contact,
            power_volume, power_residual, largest_strain, largest_strain_rate, smallest_jacobian,
            smallest_vertex_jacobian, largest_radius, cells, unknowns, iterations, set_changes,
            repeats, residual, divergence, times, remeshings, remeshing_volume_jump,
            remeshing_strain_jump] = object;
-    archive(step, time, time_step, stroke, tools, boundaries, volume, relative_volume_change,
-            power_tools, power_boundaries, power_plastic, power_friction, power_contact,
-            power_volume, power_residual, largest_strain, largest_strain_rate, smallest_jacobian,
-            smallest_vertex_jacobian, largest_radius, cells, unknowns, iterations, set_changes,
-            repeats, residual, divergence, times, remeshings, remeshing_volume_jump,
-            remeshing_strain_jump);
+    archive(step, time, time_step, stroke, tools, boundaries, gauges, volume,
+            relative_volume_change, power_tools, power_boundaries, power_plastic, power_friction,
+            power_contact, power_volume, power_residual, largest_strain, largest_strain_rate,
+            smallest_jacobian, smallest_vertex_jacobian, largest_radius, cells, unknowns,
+            iterations, set_changes, repeats, residual, divergence, times, remeshings,
+            remeshing_volume_jump, remeshing_strain_jump);
   }
 
   template <typename Archive> void visit(Archive &archive, ResultsProgress &object)

@@ -15,6 +15,8 @@
 #include <axiforge/base/parameter_file.h>
 #include <axiforge/laws/friction.h>
 #include <axiforge/laws/material.h>
+#include <axiforge/scene/folding_parameters.h>
+#include <axiforge/scene/gauge.h>
 #include <axiforge/scene/study_parameters.h>
 #include <axiforge/tools/motion.h>
 #include <axiforge/tools/profile.h>
@@ -173,11 +175,13 @@ namespace axiforge::scene
     laws::MaterialParameters        material;
     std::vector<ToolParameters>     tools;
     std::vector<BoundaryParameters> boundaries;
+    std::vector<GaugeParameters>    gauges;
     ProcessParameters               process;
     TimeParameters                  time;
     FlowParameters                  flow;
     RefinementParameters            refinement;
     RemeshingParameters             remeshing;
+    FoldingParameters               folding;
     OutputParameters                output;
     StudyParameters                 study; ///< for `axiforge study` alone
     CheckpointParameters            checkpoint;
@@ -189,7 +193,7 @@ namespace axiforge::scene
   private:
     void declare(dealii::ParameterHandler &prm);
 
-    std::string                               tool_names, boundary_names;
+    std::string                               tool_names, boundary_names, gauge_names;
     std::shared_ptr<dealii::ParameterHandler> handler;
   };
 
@@ -237,11 +241,13 @@ namespace axiforge::scene
     laws::Material                 material;
     std::vector<Tool>              tools;
     std::vector<BoundaryCondition> boundaries;
+    std::vector<Gauge>             gauges;
     ProcessParameters              process;
     TimeParameters                 time;
     FlowParameters                 flow;
     RefinementParameters           refinement;
     RemeshingParameters            remeshing;
+    FoldingParameters              folding;
     OutputParameters               output;
     CheckpointParameters           checkpoint;
 
