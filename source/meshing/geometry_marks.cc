@@ -57,7 +57,7 @@ namespace axiforge::meshing
           const Point middle(0.375 * edge.x[half] + 0.75 * edge.x[2] - 0.125 * edge.x[1 - half]);
           for (unsigned int t = 0; t < scene.tools.size(); ++t)
             {
-              const bool touches = edge.tool[half] == t && edge.tool[2] == t;
+              const bool                    touches = edge.tool[half] == t && edge.tool[2] == t;
               std::array<tools::Contact, 2> found;
               const Point                   x(middle - scene.tools[t].motion.displacement(time));
               if (scene.tools[t].profile.find(x, touches ? edge.length : 0, found) > 0)
@@ -76,8 +76,8 @@ namespace axiforge::meshing
         for (const Point &x : edge.x)
           {
             std::array<tools::Contact, 2> found;
-            const unsigned int            n = tool.profile.find(
-                Point(x - tool.motion.displacement(time)), 0.5 * edge.length, found);
+            const unsigned int n = tool.profile.find(Point(x - tool.motion.displacement(time)),
+                                                     0.5 * edge.length, found);
             for (unsigned int i = 0; i < n; ++i)
               largest = std::max(largest, std::abs(found[i].curvature));
           }
@@ -101,7 +101,7 @@ namespace axiforge::meshing
         if (const double curvature = tool_curvature(scene, state.time, edge); curvature > 0)
           {
             const double longest = 0.5 * M_PI / (curvature * limits.edges_per_quarter);
-            wish = wish | Wish{ edge.length > longest, 2 * edge.length > longest };
+            wish                 = wish | Wish{ edge.length > longest, 2 * edge.length > longest };
           }
       return wish;
     }
@@ -138,8 +138,9 @@ namespace axiforge::meshing
           double                 side        = 0;
           constexpr unsigned int sides[4][2] = { { 0, 2 }, { 1, 3 }, { 0, 1 }, { 2, 3 } };
           for (const auto &ends : sides)
-            side = std::max(side, state.node_position(nodes[ends[0]])
-                                      .distance(state.node_position(nodes[ends[1]])));
+            side = std::max(
+                side,
+                state.node_position(nodes[ends[0]]).distance(state.node_position(nodes[ends[1]])));
           wish = wish | Wish{ side > region.element_size * (1 + 1e-9),
                               2 * side > region.element_size * (1 + 1e-9) };
         }

@@ -67,6 +67,9 @@ namespace axiforge::output
                                   { "error_regularisation", r.errors.regularisation },
                                   { "error_nonlinear", r.errors.nonlinear },
                                   { "error_total", r.errors.total() } });
+      for (unsigned int i = 0; i < scene.gauges.size(); ++i)
+        list.emplace_back("gauge_" + scene.gauges[i].name + "_mm",
+                          i < r.gauges.size() ? r.gauges[i] : 0.);
       if (scene.remeshing.enabled)
         list.insert(list.end(), { { "remeshings", r.remeshings },
                                   { "remeshing_volume_jump_mm3", r.remeshing_volume_jump },

@@ -12,9 +12,9 @@ namespace axiforge::process
   {
     using Texts = std::vector<std::string>;
 
-    const Texts table_head = { "operation",  "ended by",    "steps",     "time [s]",
-                               "stroke [mm]", "height [mm]", "fill",      "end force [kN]",
-                               "max [kN]",    "work [kJ]",   "imbalance", "volume change",
+    const Texts table_head = { "operation",   "ended by",    "steps",      "time [s]",
+                               "stroke [mm]", "height [mm]", "fill",       "end force [kN]",
+                               "max [kN]",    "work [kJ]",   "imbalance",  "volume change",
                                "max strain",  "cells",       "remeshings", "wall [s]" };
 
 
@@ -39,12 +39,24 @@ namespace axiforge::process
     }
 
 
-    const Texts csv_head = { "operation",     "ended_by",       "start_s",
-                             "end_s",         "steps",          "stroke_mm",
-                             "height_mm",     "fill",           "end_force_N",
-                             "largest_force_N", "work_mJ",      "force_imbalance",
-                             "relative_volume_change", "largest_strain", "largest_radius_mm",
-                             "cells",         "remeshings",     "wall_s" };
+    const Texts csv_head = { "operation",
+                             "ended_by",
+                             "start_s",
+                             "end_s",
+                             "steps",
+                             "stroke_mm",
+                             "height_mm",
+                             "fill",
+                             "end_force_N",
+                             "largest_force_N",
+                             "work_mJ",
+                             "force_imbalance",
+                             "relative_volume_change",
+                             "largest_strain",
+                             "largest_radius_mm",
+                             "cells",
+                             "remeshings",
+                             "wall_s" };
 
 
     Texts csv_row(const OperationSummary &o, const double start)

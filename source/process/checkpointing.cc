@@ -100,7 +100,7 @@ namespace axiforge::process
       if (!operation_of(path).empty())
         path.erase(0, path.find('/') + 1);
       for (const char *section :
-           { "Output/", "Checkpoint/", "Time stepping/", "Flow solver/", "Study/" })
+           { "Output/", "Checkpoint/", "Time stepping/", "Flow solver/", "Study/", "Folding/" })
         if (path.compare(0, std::string(section).size(), section) == 0)
           return true;
       return path == "Title" || path.compare(0, 12, "Process/End ") == 0 ||
@@ -254,7 +254,7 @@ namespace axiforge::process
       return InputError::entry(
           entry, is, fmt::format("the checkpoint \"{}\" was written with \"{}\"", path, was),
           "the value of the checkpoint; only title, end of the run, time stepping, flow solver, "
-          "output and checkpoints may differ",
+          "folding, output and checkpoints may differ",
           "Put it back, or start without --resume");
     };
     for (const auto &[entry, value] : old_entries)

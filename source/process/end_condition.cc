@@ -47,8 +47,7 @@ namespace axiforge::process
     if (limits.fill >= -end_tolerance)
       return "fill";
     if (record.time >= scene.end_time() * (1 - 1e-12))
-      return scene.process.end_stroke > 0 &&
-                     record.stroke >= scene.process.end_stroke * (1 - 1e-9)
+      return scene.process.end_stroke > 0 && record.stroke >= scene.process.end_stroke * (1 - 1e-9)
                  ? "stroke"
                  : "time";
     if (record.step >= scene.time.most_steps)

@@ -5,6 +5,7 @@
 #include <axiforge/meshing/remesh.h>
 #include <axiforge/process/accuracy.h>
 #include <axiforge/process/end_condition.h>
+#include <axiforge/process/fold_watch.h>
 #include <axiforge/process/mesh_change.h>
 #include <axiforge/process/operation.h>
 #include <axiforge/process/progress.h>
@@ -112,6 +113,7 @@ namespace axiforge::process
     auto               solver            = std::make_unique<solvers::FlowSolver>(scene, state);
     StepTimes          sum;
     Progress           progress(scene, quiet);
+    FoldWatch          folds(scene, quiet);
     progress.start(state);
     checkpoints.enter(scene, chain, results);
     try
@@ -132,6 +134,7 @@ namespace axiforge::process
             sum.add(record.times);
             if (on_step)
               on_step(scene, record);
+            folds.after_step(state, record);
             progress.mesh(adapt_if_due(scene, state, solver, record));
             if (checkpoints.after_step(state, record))
               progress.say(fmt::format("checkpoint after step {}", state.step));

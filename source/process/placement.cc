@@ -35,10 +35,9 @@ namespace axiforge::process
 
     void rest_on(const scene::SceneParameters &parameters, State &state)
     {
-      const scene::ToolParameters  &tool    = find_tool(parameters);
-      const std::string             section = "Tool " + tool.name;
-      tools::Profile                profile =
-          tools::read_profile(tool.geometry, section, parameters.directory);
+      const scene::ToolParameters &tool    = find_tool(parameters);
+      const std::string            section = "Tool " + tool.name;
+      tools::Profile profile = tools::read_profile(tool.geometry, section, parameters.directory);
       const scene::WorkpieceOutline outline = meshing::outline_of(state);
       // It is the same whether the workpiece comes down or the tool comes up.
       const Vector2 way =
@@ -78,7 +77,7 @@ namespace axiforge::process
         const Vector2 way = tool.motion.displacement(scene.end_time());
         if (!(way.norm() > 0))
           continue;
-        any = true;
+        any                 = true;
         const double travel = tools::travel_to_contact(tool.profile, outline.boundary_points,
                                                        way / way.norm(), 2 * tolerance);
         if (travel == 0)
@@ -88,17 +87,18 @@ namespace axiforge::process
         double low = 0, high = scene.end_time();
         for (unsigned int i = 0; i < 200 && high - low > 1e-15 * high; ++i)
           {
-            const double middle = 0.5 * (low + high);
+            const double middle                                             = 0.5 * (low + high);
             (tool.motion.displacement(middle).norm() < travel ? low : high) = middle;
           }
         first = std::min(first, low);
       }
     if (any && !std::isfinite(first))
-      throw InputError(fmt::format(
-          "No moving tool reaches the workpiece before the end at {:.6g} s, stroke {:.6g} mm. Place "
-          "tool or workpiece closer (\"Tool NAME/Start = touching\", \"Placement/Rest on\"), or end "
-          "later.",
-          scene.end_time(), scene.stroke(scene.end_time())));
+      throw InputError(fmt::format("No moving tool reaches the workpiece before the end at {:.6g} "
+                                   "s, stroke {:.6g} mm. Place "
+                                   "tool or workpiece closer (\"Tool NAME/Start = touching\", "
+                                   "\"Placement/Rest on\"), or end "
+                                   "later.",
+                                   scene.end_time(), scene.stroke(scene.end_time())));
     return any ? first : 0;
   }
 } // namespace axiforge::process

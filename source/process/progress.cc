@@ -34,14 +34,12 @@ namespace axiforge::process
     if (quiet)
       return;
     if (state.step > 0)
-      std::cout << fmt::format("resumed after step {}, time {:.6g} s\n", state.step,
-                               state.time);
+      std::cout << fmt::format("resumed after step {}, time {:.6g} s\n", state.step, state.time);
     if (!scene.title.empty())
       std::cout << scene.title << '\n';
-    std::cout << fmt::format(
-                     "{} cells, {} unknowns, {} tools, end at {:.6g} s, stroke {:.6g} mm\n",
-                     state.tables.n_global_cells, state.n_unknowns(), scene.tools.size(),
-                     scene.end_time(), scene.stroke(scene.end_time()))
+    std::cout << fmt::format("{} cells, {} unknowns, {} tools, end at {:.6g} s, stroke {:.6g} mm\n",
+                             state.tables.n_global_cells, state.n_unknowns(), scene.tools.size(),
+                             scene.end_time(), scene.stroke(scene.end_time()))
               << std::flush;
   }
 
@@ -55,8 +53,8 @@ namespace axiforge::process
       forces += fmt::format("  {} {:.6g} N", scene.tools[i].name, record.tools[i].force);
     for (unsigned int i = 0; i < record.boundaries.size(); ++i)
       if (scene.boundaries[i].is_velocity)
-        forces += fmt::format("  {} {:.6g} MPa", scene.boundaries[i].name,
-                              record.boundaries[i].pressure);
+        forces +=
+            fmt::format("  {} {:.6g} MPa", scene.boundaries[i].name, record.boundaries[i].pressure);
     const double left =
         timer.wall_time() / (record.time - start_time) * (scene.end_time() - record.time);
     std::cout << fmt::format(
@@ -78,16 +76,16 @@ namespace axiforge::process
                              "{:.1e}, of the strain's integral {:.1e}{}\n",
                              report.cells, report.estimated_error, report.volume_change,
                              report.strain_change,
-                             report.refused ? fmt::format(", {} families kept for the outline",
-                                                          report.refused)
-                                            : "")
+                             report.refused
+                                 ? fmt::format(", {} families kept for the outline", report.refused)
+                                 : "")
               << std::flush;
   }
 
 
   void Progress::remeshed(const State                 &state,
-                const std::string           &reason,
-                const meshing::RemeshResult &result) const
+                          const std::string           &reason,
+                          const meshing::RemeshResult &result) const
   {
     if (!quiet)
       std::cout << fmt::format("remeshing after step {} ({}): {}\n", state.step, reason,
@@ -97,9 +95,9 @@ namespace axiforge::process
 
 
   void Progress::end(const State       &state,
-           const StepTimes   &sum,
-           const double       analyse,
-           const std::string &folder) const
+                     const StepTimes   &sum,
+                     const double       analyse,
+                     const std::string &folder) const
   {
     if (quiet)
       return;
@@ -109,9 +107,8 @@ namespace axiforge::process
                              "factorisation {:.0f} %, solve {:.0f} %, analysis {:.3f} s\n",
                              state.step - start_step, duration(total),
                              1e3 * total / std::max(1u, state.step - start_step),
-                             100 * (sum.assembly + sum.residual) / total,
-                             100 * sum.contact / total, 100 * sum.factor / total,
-                             100 * sum.solve / total, analyse)
+                             100 * (sum.assembly + sum.residual) / total, 100 * sum.contact / total,
+                             100 * sum.factor / total, 100 * sum.solve / total, analyse)
               << summary_of_errors(scene, state) << "Results: " << folder << '\n'
               << std::flush;
   }

@@ -6,6 +6,7 @@
 #include <axiforge/process/end_condition.h>
 #include <axiforge/process/step.h>
 #include <axiforge/state/fill.h>
+#include <axiforge/state/gauges.h>
 
 namespace axiforge::process
 {
@@ -188,6 +189,7 @@ namespace axiforge::process
                 record.smallest_jacobian        = size.smallest_jacobian;
                 record.smallest_vertex_jacobian = size.smallest_vertex_jacobian;
                 record.largest_strain           = largest_strain(state);
+                record.gauges                   = read_gauges(scene.gauges, state);
                 record.cells                    = state.tables.n_global_cells;
                 record.unknowns                 = state.n_unknowns();
                 record.repeats                  = repeats;

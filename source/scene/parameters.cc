@@ -390,6 +390,9 @@ namespace axiforge::scene
     prm.enter_subsection("Placement");
     placement.declare(prm);
     prm.leave_subsection();
+    prm.add_parameter("Gauges", gauge_names,
+                      "Names of measurements of the shape, separated by commas; each has its "
+                      "section 'Gauge NAME' and its column gauge_NAME_mm in history.csv.");
     prm.enter_subsection("Workpiece");
     workpiece.declare_workpiece(prm);
     prm.leave_subsection();
@@ -414,6 +417,12 @@ namespace axiforge::scene
         region.declare(prm);
         prm.leave_subsection();
       }
+    for (GaugeParameters &gauge : gauges)
+      {
+        prm.enter_subsection("Gauge " + gauge.name);
+        gauge.declare(prm);
+        prm.leave_subsection();
+      }
     prm.enter_subsection("Process");
     process.declare(prm);
     prm.leave_subsection();
@@ -428,6 +437,9 @@ namespace axiforge::scene
     prm.leave_subsection();
     prm.enter_subsection("Remeshing");
     remeshing.declare(prm);
+    prm.leave_subsection();
+    prm.enter_subsection("Folding");
+    folding.declare(prm);
     prm.leave_subsection();
     prm.enter_subsection("Output");
     output.declare(prm);
@@ -454,6 +466,7 @@ namespace axiforge::scene
       names.add_parameter("Tools", tool_names);
       names.add_parameter("Boundaries", boundary_names);
       names.add_parameter("Regions", region_names);
+      names.add_parameter("Gauges", gauge_names);
       file.parse(names, true);
     }
     for (const std::string &name : split_names("Tools", tool_names))
@@ -470,6 +483,11 @@ namespace axiforge::scene
       {
         regions.emplace_back();
         regions.back().name = name;
+      }
+    for (const std::string &name : split_names("Gauges", gauge_names))
+      {
+        gauges.emplace_back();
+        gauges.back().name = name;
       }
     // add_parameter keeps addresses: the vectors must not grow from here on.
     declare(*handler);

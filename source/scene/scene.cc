@@ -231,6 +231,7 @@ namespace axiforge::scene
       , flow(parameters.flow)
       , refinement(parameters.refinement)
       , remeshing(parameters.remeshing)
+      , folding(parameters.folding)
       , output(parameters.output)
       , checkpoint(parameters.checkpoint)
       , accuracy(parameters.accuracy)
@@ -323,6 +324,11 @@ namespace axiforge::scene
             (process.driving_tool.empty() || process.driving_tool == tool.name))
           driving_tool = tools.size() - 1;
       }
+    std::vector<std::string> tool_names;
+    for (const Tool &tool : tools)
+      tool_names.push_back(tool.name);
+    for (const GaugeParameters &gauge : parameters.gauges)
+      gauges.push_back(make_gauge(gauge, tool_names));
     if (!process.driving_tool.empty() &&
         (driving_tool == no_tool || tools[driving_tool].name != process.driving_tool))
       {

@@ -51,18 +51,18 @@ namespace axiforge
 
   template <typename Archive> void visit(Archive &archive, StepRecord &object)
   {
-    auto &[step, time, time_step, stroke, tools, boundaries, volume, relative_volume_change,
+    auto &[step, time, time_step, stroke, tools, boundaries, gauges, volume, relative_volume_change,
            power_tools, power_boundaries, power_plastic, power_friction, power_contact,
            power_volume, power_residual, largest_strain, largest_strain_rate, smallest_jacobian,
            smallest_vertex_jacobian, largest_radius, height, fill, cells, unknowns, iterations,
            set_changes, repeats, residual, divergence, times, remeshings, remeshing_volume_jump,
            remeshing_strain_jump, errors] = object;
-    archive(step, time, time_step, stroke, tools, boundaries, volume, relative_volume_change,
-            power_tools, power_boundaries, power_plastic, power_friction, power_contact,
-            power_volume, power_residual, largest_strain, largest_strain_rate, smallest_jacobian,
-            smallest_vertex_jacobian, largest_radius, height, fill, cells, unknowns, iterations,
-            set_changes, repeats, residual, divergence, times, remeshings, remeshing_volume_jump,
-            remeshing_strain_jump, errors);
+    archive(step, time, time_step, stroke, tools, boundaries, gauges, volume,
+            relative_volume_change, power_tools, power_boundaries, power_plastic, power_friction,
+            power_contact, power_volume, power_residual, largest_strain, largest_strain_rate,
+            smallest_jacobian, smallest_vertex_jacobian, largest_radius, height, fill, cells,
+            unknowns, iterations, set_changes, repeats, residual, divergence, times, remeshings,
+            remeshing_volume_jump, remeshing_strain_jump, errors);
   }
 
   template <typename Archive> void visit(Archive &archive, ResultsProgress &object)
@@ -166,7 +166,7 @@ namespace axiforge
     /// All of a state and what goes with it, on the first rank.
     std::string content_of(const State &state, const CheckpointExtras &extras)
     {
-      BinaryWriter mine;
+      BinaryWriter   mine;
       portable::Part part = portable::locally_owned_part(state);
       mine(part);
       const std::vector<std::string> parts = gather_on_first_rank(state.communicator, mine.text);

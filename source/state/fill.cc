@@ -67,9 +67,9 @@ namespace axiforge
         lowest  = std::min(lowest, state.node_position(node.node)[1]);
         highest = std::max(highest, state.node_position(node.node)[1]);
       }
-    const double middle = 0.5 * (MPI::min(lowest, state.communicator) +
-                                 MPI::max(highest, state.communicator));
-    const bool   has_symmetry = low <= high, below = has_symmetry && low < middle;
+    const double middle =
+        0.5 * (MPI::min(lowest, state.communicator) + MPI::max(highest, state.communicator));
+    const bool has_symmetry = low <= high, below = has_symmetry && low < middle;
 
     std::vector<double> floor(n, has_symmetry && below ? low : -none),
         ceiling(n, has_symmetry && !below ? high : none);
@@ -83,7 +83,7 @@ namespace axiforge
               const Point a = line[i] + shift, b = line[i + 1] + shift;
               // The workpiece's side is on the left: what runs outwards looks up.
               const bool         looks_up = b[0] > a[0];
-              const double       from     = std::min(a[0], b[0]), to = std::max(a[0], b[0]);
+              const double       from = std::min(a[0], b[0]), to = std::max(a[0], b[0]);
               const unsigned int first = static_cast<unsigned int>(
                   std::clamp(std::ceil(from / width - 0.5), 0., static_cast<double>(n)));
               for (unsigned int k = first; k < n && (k + 0.5) * width <= to; ++k)

@@ -77,6 +77,7 @@ namespace axiforge
       contact = NodeContact();
     for (EdgeFriction &friction : state.edge_friction)
       friction = EdgeFriction();
+    state.accuracy       = AccuracyRecord();
     state.time           = 0;
     state.step           = 0;
     state.last_time_step = state.earlier_time_step = 0;

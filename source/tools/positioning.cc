@@ -19,9 +19,8 @@ namespace axiforge::tools
     Box body;
     for (const Point &x : points)
       body.add(x);
-    const double farthest =
-        2 * (profile.bounding_box().size() + body.size() +
-             std::sqrt(body.distance_square(profile.bounding_box().lower)) + 1);
+    const double farthest = 2 * (profile.bounding_box().size() + body.size() +
+                                 std::sqrt(body.distance_square(profile.bounding_box().lower)) + 1);
 
     // A surface that moves along itself does not come closer: it may touch and slide.
     constexpr double sliding = 0.02;
@@ -61,15 +60,17 @@ namespace axiforge::tools
         result += direction[c] * ((direction[c] > 0) == most ? box.upper[c] : box.lower[c]);
       return result;
     };
-    const double back = along(profile.bounding_box(), true) - along(body, false) + 0.01 * body.size();
+    const double back =
+        along(profile.bounding_box(), true) - along(body, false) + 0.01 * body.size();
     profile.move(-back * direction);
     profile.orient(points);
     const double forward = travel_to_contact(profile, points, direction, tolerance);
     if (!std::isfinite(forward))
-      throw InputError(fmt::format(
-          "{}: on its way along ({:.4g}, {:.4g}) the tool passes the workpiece without touching it. "
-          "Draw it so that it meets the workpiece, or place it where it is to start.",
-          name, direction[0], direction[1]));
+      throw InputError(
+          fmt::format("{}: on its way along ({:.4g}, {:.4g}) the tool passes the workpiece without "
+                      "touching it. "
+                      "Draw it so that it meets the workpiece, or place it where it is to start.",
+                      name, direction[0], direction[1]));
     profile.move(forward * direction);
     return (forward - back) * direction;
   }

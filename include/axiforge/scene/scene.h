@@ -16,6 +16,8 @@
 #include <axiforge/laws/friction.h>
 #include <axiforge/laws/material.h>
 #include <axiforge/scene/accuracy_parameters.h>
+#include <axiforge/scene/folding_parameters.h>
+#include <axiforge/scene/gauge.h>
 #include <axiforge/scene/study_parameters.h>
 #include <axiforge/tools/motion.h>
 #include <axiforge/tools/profile.h>
@@ -205,11 +207,13 @@ namespace axiforge::scene
     laws::MaterialParameters        material;
     std::vector<ToolParameters>     tools;
     std::vector<BoundaryParameters> boundaries;
+    std::vector<GaugeParameters>    gauges;
     ProcessParameters               process;
     TimeParameters                  time;
     FlowParameters                  flow;
     RefinementParameters            refinement;
     RemeshingParameters             remeshing;
+    FoldingParameters               folding;
     OutputParameters                output;
     StudyParameters                 study; ///< for `axiforge study` alone
     CheckpointParameters            checkpoint;
@@ -226,7 +230,7 @@ namespace axiforge::scene
   private:
     void declare(dealii::ParameterHandler &prm);
 
-    std::string tool_names, boundary_names, operation_names, region_names;
+    std::string tool_names, boundary_names, operation_names, region_names, gauge_names;
     std::shared_ptr<dealii::ParameterHandler> handler;
   };
 
@@ -287,11 +291,13 @@ namespace axiforge::scene
     laws::Material                 material;
     std::vector<Tool>              tools;
     std::vector<BoundaryCondition> boundaries;
+    std::vector<Gauge>             gauges;
     ProcessParameters              process;
     TimeParameters                 time;
     FlowParameters                 flow;
     RefinementParameters           refinement;
     RemeshingParameters            remeshing;
+    FoldingParameters              folding;
     OutputParameters               output;
     CheckpointParameters           checkpoint;
     Accuracy                       accuracy;

@@ -10,8 +10,8 @@
 #include <axiforge/state/state.h>
 
 /**
- * A state as plain numbers that do not depend on how its cells are shared out: what checkpoints hold,
- * and what is changed where a state is to be made anew on the same mesh.
+ * A state as plain numbers that do not depend on how its cells are shared out: what checkpoints
+ * hold, and what is changed where a state is to be made anew on the same mesh.
  */
 namespace axiforge::portable
 {
@@ -31,7 +31,7 @@ namespace axiforge::portable
 
   struct Cell
   {
-    dealii::CellId::binary_type         id;
+    dealii::CellId::binary_type id;
     std::array<unsigned int, 9> nodes; ///< rows in the list of nodes
     std::array<double, 9>       strain;
     CellHistory                 history;

@@ -53,6 +53,7 @@ namespace axiforge
 
     std::vector<ToolRecord>     tools;
     std::vector<BoundaryRecord> boundaries;
+    std::vector<double>         gauges; ///< at the end of the step [mm]; nan: nothing to measure
 
     double volume = 0, relative_volume_change = 0;
 

@@ -15,10 +15,10 @@ namespace axiforge
   void let_go(State &state);
 
   /**
-   * Turns the workpiece over: z -> a - z, a so that it stays between the same heights. A mirror image of
-   * the cells would have them turn the other way, so their reference coordinates are exchanged;
-   * refined meshes keep their levels. To be followed by let_go(). Everything that looks into the
-   * mesh has to be made anew. Collective.
+   * Turns the workpiece over: z -> a - z, a so that it stays between the same heights. A mirror
+   * image of the cells would have them turn the other way, so their reference coordinates are
+   * exchanged; refined meshes keep their levels. To be followed by let_go(). Everything that looks
+   * into the mesh has to be made anew. Collective.
    */
   void turn_over(State &state);
 
