@@ -56,7 +56,7 @@ namespace axiforge::process
 
     /**
      * Axial sum of the forces of all tools over the largest of them: 0 in balance, doc/theory.md
-     * (36). Where something else holds the workpiece (a symmetry line, a boundary) it is 0.
+     * (31). Where something else holds the workpiece (a symmetry line, a boundary) it is 0.
      */
     double imbalance(const scene::Scene &scene, const State &state, const StepRecord &record)
     {

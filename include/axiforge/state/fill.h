@@ -18,7 +18,7 @@ namespace axiforge
    */
   double cavity_within(const scene::Scene &scene, const State &state, double radius, double time);
 
-  /// The share of the cavity that is filled, doc/theory.md (35): volume_within() over
+  /// The share of the cavity that is filled, doc/theory.md (30): volume_within() over
   /// cavity_within(); 0 without a cavity. Collective.
   double fill_fraction(const scene::Scene &scene, const State &state, double radius, double time);
 } // namespace axiforge
