@@ -66,7 +66,7 @@ namespace axiforge::meshing
     /// Half of a side: nodes at the places of its ends and its middle.
     CarriedSide half_of(const CarriedSide &side, const unsigned int half)
     {
-      CarriedSide  result = side;
+      CarriedSide  result    = side;
       const double places[3] = { 0.5 * half, 0.5 * half + 0.5, 0.5 * half + 0.25 };
       for (unsigned int a = 0; a < 3; ++a)
         {
@@ -77,8 +77,8 @@ namespace axiforge::meshing
           // Four points of the layer stand at each node.
           for (unsigned int i = 0; i < 4; ++i)
             for (unsigned int c = 0; c < 4; ++c)
-              result.layer[4 * a + i][c] = in_range(
-                  { { side.layer[i][c], side.layer[4 + i][c], side.layer[8 + i][c] } }, w);
+              result.layer[4 * a + i][c] =
+                  in_range({ { side.layer[i][c], side.layer[4 + i][c], side.layer[8 + i][c] } }, w);
         }
       result.tool[0] = half == 0 ? side.tool[0] : side.tool[2];
       result.tool[1] = half == 0 ? side.tool[2] : side.tool[1];
@@ -90,8 +90,8 @@ namespace axiforge::meshing
     /// A side in place of its halves: its ends are their outer ends, its middle is what they share.
     CarriedSide joined(const CarriedSide &first, const CarriedSide &second)
     {
-      CarriedSide result  = first;
-      result.has_layer    = first.has_layer && second.has_layer;
+      CarriedSide result = first;
+      result.has_layer   = first.has_layer && second.has_layer;
       const auto combine = [](auto &values, const auto &other) {
         values[2] = 0.5 * (values[1] + other[0]);
         values[1] = other[1];
@@ -112,8 +112,8 @@ namespace axiforge::meshing
 
     unsigned int child_at(const unsigned int side, const unsigned int half)
     {
-      return GeometryInfo<2>::child_cell_on_face(
-          dealii::RefinementCase<2>::isotropic_refinement, side, half);
+      return GeometryInfo<2>::child_cell_on_face(dealii::RefinementCase<2>::isotropic_refinement,
+                                                 side, half);
     }
   } // namespace
 
@@ -129,9 +129,8 @@ namespace axiforge::meshing
   }
 
 
-  CarriedCell carry(const State                       &state,
-                    const unsigned int                 cell,
-                    const std::array<unsigned int, 4> &edges)
+  CarriedCell
+  carry(const State &state, const unsigned int cell, const std::array<unsigned int, 4> &edges)
   {
     const CellHistory &history = state.cell_history[cell];
     CarriedCell        carried{};

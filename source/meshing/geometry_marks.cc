@@ -57,7 +57,7 @@ namespace axiforge::meshing
           const Point middle(0.375 * edge.x[half] + 0.75 * edge.x[2] - 0.125 * edge.x[1 - half]);
           for (unsigned int t = 0; t < scene.tools.size(); ++t)
             {
-              const bool touches = edge.tool[half] == t && edge.tool[2] == t;
+              const bool                    touches = edge.tool[half] == t && edge.tool[2] == t;
               std::array<tools::Contact, 2> found;
               const Point                   x(middle - scene.tools[t].motion.displacement(time));
               if (scene.tools[t].profile.find(x, touches ? edge.length : 0, found) > 0)
@@ -68,16 +68,21 @@ namespace axiforge::meshing
     }
 
 
-    /// Largest curvature of the tools at the nodes of the edge, touching or about to [1/mm].
+    /// Largest curvature of the tools along the edge, touching or about to [1/mm]. The places are
+    /// so close together that no fillet with a radius of a quarter of the edge is missed.
     double tool_curvature(const scene::Scene &scene, const double time, const Edge &edge)
     {
-      double largest = 0;
+      constexpr unsigned int n_places = 16;
+      double                 largest  = 0;
       for (const scene::Tool &tool : scene.tools)
-        for (const Point &x : edge.x)
+        for (unsigned int place = 0; place <= n_places; ++place)
           {
+            const double s = static_cast<double>(place) / n_places;
+            const Point  x((1 - s) * (1 - 2 * s) * edge.x[0] + s * (2 * s - 1) * edge.x[1] +
+                           4 * s * (1 - s) * edge.x[2]);
             std::array<tools::Contact, 2> found;
-            const unsigned int            n = tool.profile.find(
-                Point(x - tool.motion.displacement(time)), 0.5 * edge.length, found);
+            const unsigned int n = tool.profile.find(Point(x - tool.motion.displacement(time)),
+                                                     0.5 * edge.length, found);
             for (unsigned int i = 0; i < n; ++i)
               largest = std::max(largest, std::abs(found[i].curvature));
           }
@@ -101,7 +106,7 @@ namespace axiforge::meshing
         if (const double curvature = tool_curvature(scene, state.time, edge); curvature > 0)
           {
             const double longest = 0.5 * M_PI / (curvature * limits.edges_per_quarter);
-            wish = wish | Wish{ edge.length > longest, 2 * edge.length > longest };
+            wish                 = wish | Wish{ edge.length > longest, 2 * edge.length > longest };
           }
       return wish;
     }
@@ -138,8 +143,9 @@ namespace axiforge::meshing
           double                 side        = 0;
           constexpr unsigned int sides[4][2] = { { 0, 2 }, { 1, 3 }, { 0, 1 }, { 2, 3 } };
           for (const auto &ends : sides)
-            side = std::max(side, state.node_position(nodes[ends[0]])
-                                      .distance(state.node_position(nodes[ends[1]])));
+            side = std::max(
+                side,
+                state.node_position(nodes[ends[0]]).distance(state.node_position(nodes[ends[1]])));
           wish = wish | Wish{ side > region.element_size * (1 + 1e-9),
                               2 * side > region.element_size * (1 + 1e-9) };
         }
@@ -158,7 +164,8 @@ namespace axiforge::meshing
 
   void mark_by_geometry(const scene::Scene &scene, State &state)
   {
-    const scene::RefinementParameters &limits = scene.refinement;
+    constexpr int                      deepest = 20; // of any cell; p4est has 29
+    const scene::RefinementParameters &limits  = scene.refinement;
     std::vector<Wish>                  surface(state.tables.cells.size());
     for (const BoundaryEdge &edge : state.tables.edges)
       if (edge.owned && !scene.tools.empty())
@@ -176,7 +183,8 @@ namespace axiforge::meshing
         const bool wanted =
             region.divide ||
             (surface[row].divide && cell->level() < static_cast<int>(limits.largest_level));
-        if (wanted && !is_full && shorter_diagonal(state, row) >= 2 * limits.smallest_size)
+        if (wanted && !is_full && cell->level() < deepest &&
+            shorter_diagonal(state, row) >= 2 * limits.smallest_size)
           {
             cell->clear_coarsen_flag();
             cell->set_refine_flag();

@@ -100,9 +100,8 @@ namespace axiforge::process
                     strain += midpoint.strain_weight *
                               (history.strain_rate[q] - (*midpoint.earlier)[cell].strain_rate[q]);
                   const laws::FlowStress sigma = scene.material.flow_stress(strain, regular);
-                  const double           m =
-                      std::clamp(sigma.d_strain_rate * regular / sigma.value, 0., 1.);
-                  double pressure = 0;
+                  const double m = std::clamp(sigma.d_strain_rate * regular / sigma.value, 0., 1.);
+                  double       pressure = 0;
                   for (unsigned int i = 0; i < solvers::n_pressure; ++i)
                     pressure += geometry.pressure_basis[q][i] * history.pressure[i];
                   change += (changed ? 1 : -1) * geometry.weight[q] *
@@ -134,10 +133,10 @@ namespace axiforge::process
                     x[a] += node_value(midpoint.shift, edge.nodes[a]);
                 }
               const Vector2                chord   = x[1] - x[0];
-              const std::array<Vector2, 3> tangent = { { 2 * (x[2] - x[0]) - 0.5 * chord,
-                                                         2 * (x[1] - x[2]) - 0.5 * chord,
-                                                         0.5 * chord } };
-              constexpr double             weight[3] = { 1. / 6, 1. / 6, 4. / 6 };
+              const std::array<Vector2, 3> tangent = {
+                { 2 * (x[2] - x[0]) - 0.5 * chord, 2 * (x[1] - x[2]) - 0.5 * chord, 0.5 * chord }
+              };
+              constexpr double weight[3] = { 1. / 6, 1. / 6, 4. / 6 };
               for (unsigned int a = 0; a < 3; ++a)
                 if (const NodeContact &node = contacts[edge.boundary_nodes[a]]; node.active())
                   change += (changed ? 1 : -1) * weight[a] * 4 * M_PI * std::abs(x[a][0]) *
@@ -149,8 +148,7 @@ namespace axiforge::process
   } // namespace
 
 
-  double
-  measured_space_error(const scene::Scene &scene, const State &state, const double time_step)
+  double measured_space_error(const scene::Scene &scene, const State &state, const double time_step)
   {
     State halved(state.communicator);
     copy_state(state, halved);
@@ -160,9 +158,7 @@ namespace axiforge::process
     if (!fine.converged || !coarse.converged)
       return -1;
     const double exact = force_of(scene, fine.record);
-    return exact != 0
-               ? extrapolation * std::abs(force_of(scene, coarse.record) / exact - 1)
-               : 0;
+    return exact != 0 ? extrapolation * std::abs(force_of(scene, coarse.record) / exact - 1) : 0;
   }
 
 
@@ -202,7 +198,7 @@ namespace axiforge::process
     const bool   midpoint_rule = scene.time.scheme() == scene::TimeScheme::midpoint;
     const double half_step     = 0.5 * time_step;
     Midpoint     midpoint{ result.velocity, result.cell_history, state.position, state.velocity };
-    midpoint.earlier       = state.step == 0 ? &start.cell_history : &state.cell_history;
+    midpoint.earlier = state.step == 0 ? &start.cell_history : &state.cell_history;
     // x_n + dt/2 v lies dt^2/8 a beyond the path of the material; explicit Euler's geometry lies
     // dt/2 v before the middle.
     midpoint.strain_weight = midpoint_rule ? time_step * time_step / (8 * apart) : 0;
@@ -212,8 +208,7 @@ namespace axiforge::process
         midpoint.position.local_element(i) =
             state.position.local_element(i) + (midpoint_rule ? half_step * v : 0.);
         midpoint.shift.local_element(i) =
-            midpoint_rule ? midpoint.strain_weight * (v - earlier.local_element(i))
-                          : half_step * v;
+            midpoint_rule ? midpoint.strain_weight * (v - earlier.local_element(i)) : half_step * v;
       }
     const double change =
         change_of_bulk_power(scene, state, midpoint, midpoint_rule ? half_step : 0) +
@@ -283,7 +278,7 @@ namespace axiforge::process
       return false;
     if (space_error > allowed)
       {
-        marking.refine_fraction  = std::clamp(1.2 * (1 - aim * allowed / space_error), 0.1, 0.7);
+        marking.refine_fraction  = std::clamp(1 - aim * allowed / space_error, 0.1, 0.3);
         marking.coarsen_fraction = 0.5 * scene.refinement.coarsen_fraction;
       }
     else if (space_error < far_below * allowed)
@@ -312,7 +307,7 @@ namespace axiforge::process
         meshing::Marking marking;
         const double     recovered = recovered_space_error(scene, state, marking.indicators);
         double           error     = accuracy.space_factor * recovered;
-        if (!scaled || error <= aim * allowed)
+        if (!scaled || error <= allowed)
           {
             const double measured = measured_space_error(scene, state, time_step);
             scaled = accuracy.checked = true;
@@ -350,7 +345,7 @@ namespace axiforge::process
     std::string text = "Estimated error of the force, mean and largest in %:";
     const auto  add  = [&](const char *name, double ErrorEstimate::*part) {
       text += fmt::format("  {} {:.2g}, {:.2g}", name, 100 * accuracy.sum.*part / accuracy.time,
-                          100 * accuracy.largest.*part);
+                            100 * accuracy.largest.*part);
     };
     add("space", &ErrorEstimate::space);
     add("time", &ErrorEstimate::time);
@@ -360,10 +355,9 @@ namespace axiforge::process
                         100 * accuracy.largest_total);
     if (scene.accuracy.driven())
       text += fmt::format("\nTarget {:.3g} %: {}", 100 * scene.accuracy.target,
-                          accuracy.above == 0
-                              ? std::string("kept in every step")
-                              : fmt::format("exceeded in {} of {} steps", accuracy.above,
-                                            accuracy.steps));
+                          accuracy.above == 0 ? std::string("kept in every step")
+                                              : fmt::format("exceeded in {} of {} steps",
+                                                            accuracy.above, accuracy.steps));
     return text + '\n';
   }
 } // namespace axiforge::process

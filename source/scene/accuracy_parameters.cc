@@ -53,8 +53,7 @@ namespace axiforge::scene
           {
             used = 0;
           }
-        const bool whole =
-            used > 0 && text.find_first_not_of(" \t", used) == std::string::npos;
+        const bool whole = used > 0 && text.find_first_not_of(" \t", used) == std::string::npos;
         if (!whole || !(target >= 1e-5 && target <= 0.5))
           throw InputError::entry("Accuracy/Target accuracy", parameters.target,
                                   "this is no relative error of the force",
