@@ -6,8 +6,7 @@
 
 Runs parameter_files/study_sticking_cylinder.prm and study_sticking_adaptive.prm with PROGRAM
 (build/release/axiforge), results in FOLDER (a temporary one), prints a Markdown table and writes
-doc/images/adaptive_sticking.svg. The error is that against the finest adaptive mesh, whose own error is
-estimated from the fall of the last three. Needs nothing but the standard library.
+doc/images/adaptive_sticking.svg. The error is that against the limit of the two finest adaptive meshes. Needs nothing but the standard library.
 """
 import csv
 import math
@@ -78,9 +77,9 @@ def main():
         folder = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else temporary)
         uniform = study(program, "study_sticking_cylinder", folder)
         adaptive = study(program, "study_sticking_adaptive", folder)
-    # Aitken's limit of the last three, if they fall towards one.
-    first, second, third = (force for _, force in adaptive[-3:])
-    limit = third - (third - second) ** 2 / ((third - second) - (second - first)) if first > second > third else third
+    # The error of adapted meshes falls with the square of the unknowns: the limit of the last two.
+    (fewer, before), (more, last) = adaptive[-2:]
+    limit = last - (before - last) / ((more / fewer) ** 2 - 1)
     print(f"Limit: {limit:.2f} N = {limit / (math.pi * 625 * 100):.6f} sigma_0 A\n")
     print("| mesh | unknowns | error of the force |\n|---|---|---|")
     curves = []

@@ -15,7 +15,7 @@ namespace axiforge::process
   {
     /// Difference of the force on halved cells to the whole error: with order p it is 1/(1 - 2^-p)
     /// times the difference, 2 for p = 1 and 1.07 for p = 4. The order is not known.
-    constexpr double extrapolation = 4. / 3;
+    constexpr double extrapolation = 5. / 3;
 
     /// Below this a recovery estimate is rounding, and scales nothing.
     constexpr double least_recovered = 1e-9;
