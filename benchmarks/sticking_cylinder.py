@@ -52,7 +52,7 @@ def picture(curves, width=640, height=420):
             a = place(10.0**exponent, 10.0 ** low[1]) if axis == 0 else place(10.0 ** low[0], 10.0**exponent)
             b = place(10.0**exponent, 10.0 ** high[1]) if axis == 0 else place(10.0 ** high[0], 10.0**exponent)
             text.append(f'<path d="M{a[0]:.1f} {a[1]:.1f}L{b[0]:.1f} {b[1]:.1f}" stroke="#ddd"/>')
-            label = f'10<tspan dy="-5" font-size="10">{exponent}</tspan>'
+            label = f"1e{exponent}"
             at = (a[0], a[1] + 20, "middle") if axis == 0 else (a[0] - 8, a[1] + 4, "end")
             text.append(f'<text x="{at[0]:.1f}" y="{at[1]:.1f}" text-anchor="{at[2]}">{label}</text>')
     text.append(f'<text x="{(left + width - right) / 2}" y="{height - 10}" text-anchor="middle">unknowns</text>')
