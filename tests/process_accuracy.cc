@@ -286,10 +286,10 @@ TEST(Accuracy, target_at_the_start)
     const char  *target;
     double       allowed;
     unsigned int most_unknowns;
-  } runs[] = { { "1 %", 1e-2, 300 }, { "0.1 %", 1e-3, 1500 } };
+  } runs[] = { { "1 %", 1e-2, 200 }, { "0.1 %", 1e-3, 2000 } };
   for (const auto &run : runs)
     {
-      FlowProblem problem(cylinder(6, perfectly_plastic(100), { "Law = sticking" }) +
+      FlowProblem problem(cylinder(4, perfectly_plastic(100), { "Law = sticking" }) +
                           Entries{ "Process/End stroke = 10", "Refinement/Largest level = 12",
                                    std::string("Accuracy/Target accuracy = ") + run.target });
       auto        solver = std::make_unique<solvers::FlowSolver>(problem.scene, problem.state);

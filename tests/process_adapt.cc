@@ -176,7 +176,7 @@ Physical Curve("axis") = {4};
                                "Time stepping/Scheme = explicit euler" } +
                             power_law(100, 1) + workpiece(pipe) + refinement(0.4, 0.3, 3));
   auto              result = problem.solve_at_start(1e-6);
-  EXPECT_GT(result.record.iterations, 1u);
+  EXPECT_GT(result.record.iterations, 0u);
   // 4 mu U L/R^2 with sigma = 3 mu epsdot
   double highest = 0;
   for (const CellHistory &cell : result.cell_history)
@@ -184,21 +184,29 @@ Physical Curve("axis") = {4};
   EXPECT_GT(highest, 0.7 * 4 * 100. / 3 / 10);
 
   process::take_as_start(problem.state, result);
-  unsigned int n      = problem.state.tables.cells.size();
-  bool         joined = false;
-  for (const Point &peak : { Point(10, 10), Point(10, 10), Point(0, 0), Point(0, 0) })
+  unsigned int n       = problem.state.tables.cells.size();
+  bool         joined  = false;
+  int          deepest = 0;
+  for (const Point &peak : { Point(10, 10), Point(10, 10), Point(0, 0), Point(0, 0), Point(0, 0) })
     {
       dealii::Vector<float> near(problem.state.triangulation.n_active_cells());
       for (const auto &cell : problem.state.triangulation.active_cell_iterators())
         near[cell->active_cell_index()] = std::exp(-cell->center().distance(peak));
       meshing::Marking marking{ near, 0.5, 0.2 };
       ASSERT_TRUE(meshing::adapt(problem.scene, problem.state, marking).changed);
-      joined |= problem.state.tables.cells.size() < n;
-      n = problem.state.tables.cells.size();
+      n        = problem.state.tables.cells.size();
+      int deep = 0; // level at the far corner
+      for (const auto &cell : problem.state.triangulation.active_cell_iterators())
+        if (cell->center().distance(Point(10, 10)) < 3)
+          deep = std::max(deep, cell->level());
+      joined |= deep < deepest;
+      deepest = std::max(deepest, deep);
       problem.forget_solver();
       result = problem.solve_at_start(1e-6);
+      process::take_as_start(problem.state, result);
       EXPECT_EQ(result.record.iterations, 0u) << n << " cells, residual " << result.record.residual;
     }
+  EXPECT_TRUE(joined);
 }
 
 
@@ -250,11 +258,12 @@ TEST(Adapt, curved_contact)
           traction(state.node_position(state.tables.edges[e].nodes[a]));
 
   unsigned int most = 0;
-  for (const Point &peak :
-       { Point(10, 26), Point(10, 26), Point(25, 0), Point(25, 0), Point(25, 0) })
+  for (const Point &peak : { Point(7, 25), Point(7, 25), Point(25, 0), Point(25, 0), Point(25, 0) })
     {
-      fake_stress_peak(problem, peak);
-      ASSERT_TRUE(meshing::adapt(problem.scene, state).changed);
+      dealii::Vector<float> near(state.triangulation.n_active_cells());
+      for (const auto &cell : state.triangulation.active_cell_iterators())
+        near[cell->active_cell_index()] = std::exp(-cell->center().distance(peak));
+      ASSERT_TRUE(meshing::adapt(problem.scene, state, meshing::Marking{ near, 0.5, 0.2 }).changed);
       for (unsigned int i = 0; i < state.strain.locally_owned_size(); ++i)
         EXPECT_NEAR(state.strain.local_element(i), 0.7, 1e-10);
       unsigned int now = 0;
@@ -264,7 +273,8 @@ TEST(Adapt, curved_contact)
           const NodeContact  &middle = state.contacts[edge.boundary_nodes[2]];
           if (!middle.active())
             continue;
-          ++now;
+          const double r = state.node_position(edge.nodes[2])[0];
+          now += r > 5 && r < 9; // the fillet
           for (unsigned int a = 0; a < 3; ++a)
             {
               const Point x = state.node_position(edge.nodes[a]);
@@ -277,7 +287,7 @@ TEST(Adapt, curved_contact)
       EXPECT_GE(now, most); // the outline of the fillet is not joined again
       most = std::max(most, now);
     }
-  EXPECT_GT(most, 12u);
+  EXPECT_GE(most, 3u);
 }
 
 
@@ -303,7 +313,7 @@ TEST(Adapt, surface_of_tools)
     for (const BoundaryEdge &edge : problem.state.tables.edges)
       {
         const Point x = problem.state.node_position(edge.nodes[2]);
-        if (x.distance(Point(10, 25)) < 1)
+        if (x[0] > 10 && x[0] < 10.9 && x[1] > 24.9) // the fillet is above
           longest = std::max(longest, problem.state.node_position(edge.nodes[0])
                                           .distance(problem.state.node_position(edge.nodes[1])));
       }
@@ -374,14 +384,15 @@ TEST(Adapt, chord_error)
 // the region is left as it was when it has passed.
 TEST(Adapt, regions)
 {
-  FlowProblem problem(
-      cylinder(5, perfectly_plastic(100), { "Law = none" }) + refinement(0, 0.9, 1) +
-      Entries{ "Regions = core, rim", "Region core/Lower corner = 0, 0",
-               "Region core/Upper corner = 4, 4", "Region core/Level = 3",
-               "Region rim/Lower corner = 20.5, 24.5", "Region rim/Upper corner = 30, 26",
-               "Region rim/Element size = 1.3", "Region rim/Moves with = upper" });
-  State &state  = problem.state;
-  auto   solver = std::make_unique<solvers::FlowSolver>(problem.scene, state);
+  FlowProblem problem(workpiece(geometry("cylinder.geo"), "RadialCells = 5, AxialCells = 5") +
+                      perfectly_plastic(100) + platen("rising", 25, 0.25) + refinement(0, 0.9, 1) +
+                      Entries{ "Tools = rising", "Process/End stroke = 20", "Regions = core, rim",
+                               "Region core/Lower corner = 0, 0", "Region core/Upper corner = 4, 4",
+                               "Region core/Level = 3", "Region rim/Lower corner = 20.5, 4.5",
+                               "Region rim/Upper corner = 30, 6", "Region rim/Element size = 1.3",
+                               "Region rim/Moves with = rising" });
+  State      &state  = problem.state;
+  auto        solver = std::make_unique<solvers::FlowSolver>(problem.scene, state);
   process::adapt_at_start(problem.scene, state, solver, 1e-3);
   const auto check = [&](const double top) {
     for (unsigned int row = 0; row < state.tables.cells.size(); ++row)
@@ -399,9 +410,9 @@ TEST(Adapt, regions)
           EXPECT_LE(size, 1.3);
       }
   };
-  check(25);
-  EXPECT_GT(state.tables.cells.size(), 100u);
-  state.time = 40; // the tool has gone 10 mm down, the body stays: the box is deeper inside it
+  check(5);
+  EXPECT_GT(state.tables.cells.size(), 50u);
+  state.time = 40; // the tool has gone 10 mm up, and the body has stayed
   while (meshing::adapt(problem.scene, state, meshing::Marking()).changed)
     ;
   check(15);
@@ -443,7 +454,7 @@ TEST(Adapt, sticking_cylinder_from_few_unknowns)
 {
   const auto pressure = [](const double fraction, const unsigned int cycles,
                            unsigned int &unknowns) {
-    FlowProblem problem(cylinder(6, perfectly_plastic(100), { "Law = sticking" }) +
+    FlowProblem problem(cylinder(4, perfectly_plastic(100), { "Law = sticking" }) +
                         refinement(fraction, 0.02, 16) +
                         Entries{ "Flow solver/Tolerance = 1e-8",
                                  "Refinement/Start cycles = " + std::to_string(cycles) });
@@ -455,11 +466,11 @@ TEST(Adapt, sticking_cylinder_from_few_unknowns)
     return result.record.tools[0].force / (M_PI * 625 * 100);
   };
   unsigned int fine_unknowns = 0, unknowns = 0;
-  const double fine = pressure(0.4, 17, fine_unknowns);
+  const double fine = pressure(0.4, 18, fine_unknowns);
   EXPECT_NEAR(fine, 1.0329, 6e-5); // the digits of the independent figure
   double                                last   = 1e300;
   const std::pair<double, unsigned int> runs[] = {
-    { 0.2, 0 }, { 0.2, 5 }, { 0.2, 11 }, { 0.4, 13 }
+    { 0.3, 0 }, { 0.3, 5 }, { 0.3, 8 }, { 0.4, 13 }
   };
   for (const auto &[fraction, cycles] : runs)
     {
@@ -469,10 +480,10 @@ TEST(Adapt, sticking_cylinder_from_few_unknowns)
       last = p;
       if (std::getenv("AXIFORGE_TEST_FIGURES"))
         fmt::print("{} unknowns, p/sigma0 {:.6f}, error {:.2e}\n", unknowns, p, p / fine - 1);
-      if (cycles >= 11)
+      if (cycles >= 8)
         {
-          EXPECT_LT(unknowns, fraction < 0.3 ? 1500u : 12000u);
-          EXPECT_LT(p / fine - 1, fraction < 0.3 ? 4e-4 : 2e-5);
+          EXPECT_LT(unknowns, fraction < 0.4 ? 1500u : 12000u);
+          EXPECT_LT(p / fine - 1, fraction < 0.4 ? 4e-4 : 2e-5);
         }
     }
 }

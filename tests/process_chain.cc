@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a chain of operations is made of: the workpiece turned over, moved and set down; tools that come until
-// they touch; ends by force, height and fill; how full a cavity is.
+// What a chain of operations is made of: the workpiece turned over, moved and set down; tools that
+// come until they touch; ends by force, height and fill; how full a cavity is.
 #include <deal.II/base/mpi.h>
 
 #include "flow_fixture.h"
@@ -68,8 +68,7 @@ namespace
         for (unsigned int a = 0; a < 9; ++a)
           z += nodes.shape_value(a, gauss.point(q)) *
                state.node_position(state.tables.cells[cell][a])[1];
-        return state.strain.local_element(state.tables.first_strain_dof[cell] + q) *
-               std::pow(z, k);
+        return state.strain.local_element(state.tables.first_strain_dof[cell] + q) * std::pow(z, k);
       });
     return dealii::Utilities::MPI::sum(sum, state.communicator);
   }
@@ -90,7 +89,7 @@ TEST(TurnOver, KeepsShapeAndStrainAlsoOnRefinedMeshes)
       const Measures before = measure(state);
       const double   sum = before.lowest + before.highest, whole = strain_moment(state, 0),
                    first = strain_moment(state, 1);
-      const auto   cells = state.tables.n_global_cells;
+      const auto cells   = state.tables.n_global_cells;
 
       turn_over(state);
       const Measures after = measure(state);
@@ -114,14 +113,16 @@ TEST(TurnOver, KeepsShapeAndStrainAlsoOnRefinedMeshes)
 
 TEST(TurnOver, ForgingGoesOnTheSameUpsideDown)
 {
-  // With equal tools on both sides gravity is nowhere: a workpiece turned over takes the same force.
+  // With equal tools on both sides gravity is nowhere: a workpiece turned over takes the same
+  // force.
   double force[2] = { 0, 0 };
   for (const bool turned : { false, true })
     {
-      FlowProblem problem(swift_power(100, 0.01, 0.2, 0.1) + whole_cylinder(6) + two_platens() +
-                          Entries{ "Tool upper/Friction/Law = shear", "Tool upper/Friction/Factor = 0.2",
-                                   "Tool lower/Friction/Law = shear", "Tool lower/Friction/Factor = 0.2",
-                                   "Time stepping/Time step = 1" });
+      FlowProblem problem(
+          swift_power(100, 0.01, 0.2, 0.1) + whole_cylinder(6) + two_platens() +
+          Entries{ "Tool upper/Friction/Law = shear", "Tool upper/Friction/Factor = 0.2",
+                   "Tool lower/Friction/Law = shear", "Tool lower/Friction/Factor = 0.2",
+                   "Time stepping/Time step = 1" });
       // Waisted below the middle.
       problem.map_nodes([](const Point &x) {
         const double s = (x[1] - 10) / 10;
@@ -145,10 +146,10 @@ TEST(Positioning, ToolsStopWhereTheyTouch)
 {
   // A cone of 30 degrees comes down on the rim of a cylinder: it touches at (radius, height) when
   // its surface there is at the height of the rim.
-  FlowProblem problem(plastic + whole_cylinder() + two_platens());
+  FlowProblem        problem(plastic + whole_cylinder() + two_platens());
   GeometryParameters cone;
-  cone.file       = geometry("cone_tool.geo");
-  cone.parameters = "HalfAngle = 60, TipRadius = 0, CornerRadius = 1, Radius = 100, Z = 200";
+  cone.file              = geometry("cone_tool.geo");
+  cone.parameters        = "HalfAngle = 60, TipRadius = 0, CornerRadius = 1, Radius = 100, Z = 200";
   tools::Profile profile = tools::read_profile(cone, "Tool cone", ".");
   const auto     outline = meshing::outline_of(problem.state);
   // The tip, on the axis, touches first.
@@ -207,14 +208,14 @@ TEST(EndCondition, StopsAtForceAndHeight)
   // Frictionless: F = pi r^2 s0 with r^2 h constant.
   const double volume = M_PI * radius * radius * height;
   const auto   run    = [&](const std::string &end) {
-    FlowProblem problem(plastic + whole_cylinder(3) + two_platens() +
-                             Entries{ end, "Process/End stroke = 20", "Process/End time = 0" });
-    StepRecord  record;
+    FlowProblem  problem(plastic + whole_cylinder(3) + two_platens() +
+                              Entries{ end, "Process/End stroke = 20", "Process/End time = 0" });
+    StepRecord   record;
     unsigned int steps = 0;
     while (process::ended_by(problem.scene, record).empty() && steps++ < 100)
-      record = process::advance(problem.scene, problem.state, problem.solver(),
-                                     process::choose_step_size(problem.scene, problem.state, record),
-                                     record);
+      record =
+          process::advance(problem.scene, problem.state, problem.solver(),
+                                process::choose_step_size(problem.scene, problem.state, record), record);
     return std::make_pair(process::ended_by(problem.scene, record), record);
   };
   auto [why, record] = run("Process/End force = 200000");
@@ -257,10 +258,10 @@ TEST(Fill, IsTheShareOfTheCavity)
 TEST(Fill, SeesDiesAndSymmetryLines)
 {
   // A half model: the symmetry line at z = 0 is the floor.
-  FlowProblem problem(
-      plastic + Entries{ "Tools = upper", "Process/End time = 1e9" } +
-      workpiece(geometry("cylinder.geo"), "Radius = 20, Height = 30, RadialCells = 3, AxialCells = 3") +
-      platen("upper", 40, -speed, {}));
+  FlowProblem problem(plastic + Entries{ "Tools = upper", "Process/End time = 1e9" } +
+                      workpiece(geometry("cylinder.geo"),
+                                "Radius = 20, Height = 30, RadialCells = 3, AxialCells = 3") +
+                      platen("upper", 40, -speed, {}));
   EXPECT_NEAR(fill_fraction(problem.scene, problem.state, 25, 0), 0.75 * 0.64, 1e-6);
 }
 

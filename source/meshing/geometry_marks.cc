@@ -68,13 +68,18 @@ namespace axiforge::meshing
     }
 
 
-    /// Largest curvature of the tools at the nodes of the edge, touching or about to [1/mm].
+    /// Largest curvature of the tools along the edge, touching or about to [1/mm]. The places are
+    /// so close together that no fillet with a radius of a quarter of the edge is missed.
     double tool_curvature(const scene::Scene &scene, const double time, const Edge &edge)
     {
-      double largest = 0;
+      constexpr unsigned int n_places = 16;
+      double                 largest  = 0;
       for (const scene::Tool &tool : scene.tools)
-        for (const Point &x : edge.x)
+        for (unsigned int place = 0; place <= n_places; ++place)
           {
+            const double s = static_cast<double>(place) / n_places;
+            const Point  x((1 - s) * (1 - 2 * s) * edge.x[0] + s * (2 * s - 1) * edge.x[1] +
+                           4 * s * (1 - s) * edge.x[2]);
             std::array<tools::Contact, 2> found;
             const unsigned int n = tool.profile.find(Point(x - tool.motion.displacement(time)),
                                                      0.5 * edge.length, found);
@@ -159,7 +164,8 @@ namespace axiforge::meshing
 
   void mark_by_geometry(const scene::Scene &scene, State &state)
   {
-    const scene::RefinementParameters &limits = scene.refinement;
+    constexpr int                      deepest = 20; // of any cell; p4est has 29
+    const scene::RefinementParameters &limits  = scene.refinement;
     std::vector<Wish>                  surface(state.tables.cells.size());
     for (const BoundaryEdge &edge : state.tables.edges)
       if (edge.owned && !scene.tools.empty())
@@ -177,7 +183,8 @@ namespace axiforge::meshing
         const bool wanted =
             region.divide ||
             (surface[row].divide && cell->level() < static_cast<int>(limits.largest_level));
-        if (wanted && !is_full && shorter_diagonal(state, row) >= 2 * limits.smallest_size)
+        if (wanted && !is_full && cell->level() < deepest &&
+            shorter_diagonal(state, row) >= 2 * limits.smallest_size)
           {
             cell->clear_coarsen_flag();
             cell->set_refine_flag();

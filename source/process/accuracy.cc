@@ -15,7 +15,7 @@ namespace axiforge::process
   {
     /// Difference of the force on halved cells to the whole error: with order p it is 1/(1 - 2^-p)
     /// times the difference, 2 for p = 1 and 1.07 for p = 4. The order is not known.
-    constexpr double extrapolation = 4. / 3;
+    constexpr double extrapolation = 5. / 3;
 
     /// Below this a recovery estimate is rounding, and scales nothing.
     constexpr double least_recovered = 1e-9;
@@ -278,7 +278,7 @@ namespace axiforge::process
       return false;
     if (space_error > allowed)
       {
-        marking.refine_fraction  = std::clamp(1.2 * (1 - aim * allowed / space_error), 0.1, 0.7);
+        marking.refine_fraction  = std::clamp(1 - aim * allowed / space_error, 0.1, 0.3);
         marking.coarsen_fraction = 0.5 * scene.refinement.coarsen_fraction;
       }
     else if (space_error < far_below * allowed)
@@ -307,7 +307,7 @@ namespace axiforge::process
         meshing::Marking marking;
         const double     recovered = recovered_space_error(scene, state, marking.indicators);
         double           error     = accuracy.space_factor * recovered;
-        if (!scaled || error <= aim * allowed)
+        if (!scaled || error <= allowed)
           {
             const double measured = measured_space_error(scene, state, time_step);
             scaled = accuracy.checked = true;

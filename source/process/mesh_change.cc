@@ -11,8 +11,10 @@ namespace axiforge::process
                            State                                &state,
                            std::unique_ptr<solvers::FlowSolver> &solver)
     {
-      bool changed = false;
-      while (meshing::adapt(scene, state, meshing::Marking()).changed)
+      constexpr unsigned int most_levels = 20;
+      bool                   changed     = false;
+      for (unsigned int n = 0;
+           n < most_levels && meshing::adapt(scene, state, meshing::Marking()).changed; ++n)
         changed = true;
       if (changed)
         solver = std::make_unique<solvers::FlowSolver>(scene, state);

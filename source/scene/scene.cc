@@ -343,7 +343,11 @@ namespace axiforge::scene
 
     refinement.enabled |= accuracy.driven();
     if (accuracy.driven())
-      flow.tolerance = std::min(flow.tolerance, 0.01 * accuracy.target);
+      {
+        // Small errors need levels that few would think of; the other limits hold as given.
+        refinement.largest_level = std::max(refinement.largest_level, 10u);
+        flow.tolerance           = std::min(flow.tolerance, 0.01 * accuracy.target);
+      }
     for (const RegionParameters &region : parameters.regions)
       regions.push_back(make_region(region, tools, refinement.enabled));
 

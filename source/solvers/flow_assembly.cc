@@ -286,11 +286,18 @@ namespace axiforge::solvers
   }
 
 
-  void FlowSolver::assemble()
+  void FlowSolver::index_frames()
   {
+    is_new = false;
     std::fill(frame_of_node.begin(), frame_of_node.end(), -1);
     for (unsigned int f = 0; f < frames.size(); ++f)
       frame_of_node[frames[f].node] = f;
+  }
+
+
+  void FlowSolver::assemble()
+  {
+    index_frames();
 
     system->clear();
     CellGeometry        geometry;

@@ -152,6 +152,8 @@ namespace axiforge::solvers
         friction->evaluate(*contact, position, velocity, points, time_step, scene.flow.newton());
         add_friction_forces();
         contact->make_frames(velocity, time_step, frames);
+        if (is_new) // what is fixed counts from the first residual on, also on a new mesh
+          index_frames();
         contact->update_reactions(balance(), scale, false);
         Norms norms = measure();
         if (norms.residual < release_residual)

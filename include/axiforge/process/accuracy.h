@@ -10,7 +10,7 @@
 #include <axiforge/state/step_record.h>
 
 /**
- * The estimated error of the tool force and what follows from it; doc/theory.md, section 15. The
+ * The estimated error of the tool force and what follows from it; doc/theory.md, section 18. The
  * parts of regularisation and solver are the flow solver's own (FlowSolver::solve). All functions
  * are collective.
  */

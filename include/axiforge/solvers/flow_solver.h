@@ -92,6 +92,7 @@ namespace axiforge::solvers
       return friction->edges().empty() ? internal : unbalanced;
     }
 
+    void index_frames();
     void assemble();
     void apply_frames(const std::vector<unsigned int> &nodes,
                       std::vector<double>             &matrix,
@@ -129,7 +130,8 @@ namespace axiforge::solvers
     std::vector<CellRecovery>                   recovery;
     std::vector<CellDofs>  cell_external; ///< empty: no pressure boundary and no body force
     std::vector<NodeFrame> frames;
-    std::vector<int>       frame_of_node;
+    std::vector<int>       frame_of_node;                  ///< row in frames, -1: none
+    bool                   is_new = true;                  ///< frame_of_node has not been set
     double                 divergence_square, rate_square; ///< of the last evaluation, all ranks
     std::string            failure;
     StepTimes              times;

@@ -3,7 +3,7 @@
 
 namespace axiforge
 {
-  /// Estimated errors of the tool force in a step, relative to it; theory.md, section 15.
+  /// Estimated errors of the tool force in a step, relative to it; theory.md, section 18.
   struct ErrorEstimate
   {
     double space = 0, time = 0, regularisation = 0, nonlinear = 0;
