@@ -2,9 +2,11 @@
 // What a chain of operations is made of: the workpiece turned over, moved and set down; tools that
 // come until they touch; ends by force, height and fill; how full a cavity is.
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
 
 #include "flow_fixture.h"
 
+#include <axiforge/base/errors.h>
 #include <axiforge/meshing/transfer.h>
 #include <axiforge/process/end_condition.h>
 #include <axiforge/process/placement.h>
@@ -181,7 +183,7 @@ TEST(Positioning, ALooseWorkpieceWaitsForTheTool)
   FlowProblem  problem(plastic + whole_cylinder() + two_platens(1.5));
   const auto   outline = meshing::outline_of(problem.state);
   const double time    = process::time_of_first_contact(problem.scene, outline, problem.state);
-  EXPECT_NEAR(time, 1.5 / speed, 1e-7);
+  EXPECT_NEAR(time, 1.5 / speed, 3e-9 * 36 / speed); // stops so short of touching
   problem.state.time      = time;
   const StepRecord record = process::advance(problem.scene, problem.state, problem.solver(), 1);
   EXPECT_NEAR(record.height, height - speed, 1e-6);
@@ -212,7 +214,7 @@ TEST(EndCondition, StopsAtForceAndHeight)
                               Entries{ end, "Process/End stroke = 20", "Process/End time = 0" });
     StepRecord   record;
     unsigned int steps = 0;
-    while (process::ended_by(problem.scene, record).empty() && steps++ < 100)
+    while (process::ended_by(problem.scene, record).empty() && steps++ < 1000)
       record =
           process::advance(problem.scene, problem.state, problem.solver(),
                                 process::choose_step_size(problem.scene, problem.state, record), record);
@@ -220,9 +222,9 @@ TEST(EndCondition, StopsAtForceAndHeight)
   };
   auto [why, record] = run("Process/End force = 200000");
   EXPECT_EQ(why, "force");
-  EXPECT_NEAR(record.tools[0].force / 2e5, 1, 1e-3);
-  // The force holds at the middle of the step: the height there.
-  EXPECT_NEAR((record.height + 0.5 * speed * record.time_step) / (volume * 100 / 2e5), 1, 3e-3);
+  // The height at which the force is reached, to the tolerance of the end and what the line
+  // through the last two steps is off.
+  EXPECT_NEAR(record.height / (volume * 100 / 2e5), 1, 1.2e-3);
 
   std::tie(why, record) = run("Process/End height = 23.4");
   EXPECT_EQ(why, "height");

@@ -20,7 +20,7 @@ namespace axiforge::process
       if (record.step == 0)
         return result;
       if (end.end_force > 0)
-        result.force = record.tools[scene.driving_tool].force / end.end_force - 1;
+        result.force = record.end_force / end.end_force - 1;
       if (end.end_height > 0)
         result.height = 1 - record.height / end.end_height;
       if (end.end_fill > 0)

@@ -77,6 +77,23 @@ namespace axiforge::process
     }
 
 
+    /// Force of the driving tool [N] at the end of a step, by the line through the middles of this
+    /// step and the one before.
+    double force_at_end(const scene::Scene &scene,
+                        const StepRecord   &record,
+                        const double        time_step,
+                        const StepRecord   &last)
+    {
+      if (scene.driving_tool == no_tool)
+        return 0;
+      const double force = record.tools[scene.driving_tool].force;
+      if (last.step == 0)
+        return force;
+      return force + (force - last.tools[scene.driving_tool].force) * time_step /
+                         (time_step + last.time_step);
+    }
+
+
     void accept(State &state, solvers::FlowResult &result, const double time_step)
     {
       const std::size_t n = state.position.locally_owned_size();
@@ -171,6 +188,7 @@ namespace axiforge::process
                 record.step       = state.step + 1;
                 record.height     = size.highest - size.lowest;
                 record.fill       = fill;
+                record.end_force  = force_at_end(scene, record, time_step, last);
                 if (const double passed = passed_end(scene, record);
                     passed > end_tolerance && cuts++ < most_cuts)
                   {
