@@ -26,8 +26,8 @@ namespace
         const unsigned int  fine = 1000;
         std::vector<double> count(1, 0.);
         for (unsigned int i = 0; i < fine; ++i)
-          count.push_back(count.back() + a.distance(b) / fine /
-                                             field.at(a + (i + 0.5) / fine * (b - a)));
+          count.push_back(count.back() +
+                          a.distance(b) / fine / field.at(a + (i + 0.5) / fine * (b - a)));
         const unsigned int n = 2 * std::max(1l, std::lround(0.5 * count.back()));
         std::vector<Point> x;
         for (unsigned int i = 0, j = 0; i <= n; ++i)
@@ -101,8 +101,7 @@ TEST(OutlineMesh, FollowsTheField)
 {
   SizeField field(2, 0.2, 0.3);
   field.demand(Point(20, 10), 0.25);
-  const NewLoop loop =
-      polygon({ Point(10, 0), Point(30, 0), Point(30, 20), Point(10, 20) }, field);
+  const NewLoop loop = polygon({ Point(10, 0), Point(30, 0), Point(30, 20), Point(10, 20) }, field);
   const NewMesh made = mesh_outline({ loop }, field, { { "surface", surface_id } });
   ASSERT_TRUE(made.fault.empty()) << made.fault;
   EXPECT_GT(smallest_scaled_jacobian(made.mesh), 0.3);
@@ -130,10 +129,9 @@ TEST(OutlineMesh, FollowsTheField)
 TEST(MeshRepair, FlatCornersAreFramed)
 {
   // A 2 x 2 square; the lower side has a middle vertex 1 that belongs to one cell only.
-  NewMesh made = mesh_of({ Point(1, 0), Point(2, 0), Point(3, 0), Point(3, 2), Point(2, 2),
-                           Point(1, 2), Point(2, 1) },
-                         { { { 0, 1, 6, 2 } }, { { 6, 2, 4, 3 } }, { { 0, 6, 5, 4 } } },
-                         { 0, 1, 2, 3, 4, 5 });
+  NewMesh made = mesh_of(
+      { Point(1, 0), Point(2, 0), Point(3, 0), Point(3, 2), Point(2, 2), Point(1, 2), Point(2, 1) },
+      { { { 0, 1, 6, 2 } }, { { 6, 2, 4, 3 } }, { { 0, 6, 5, 4 } } }, { 0, 1, 2, 3, 4, 5 });
   ASSERT_LT(smallest_scaled_jacobian(made.mesh), 1e-10);
   EXPECT_EQ(repair_topology(made), 1u);
   EXPECT_EQ(made.mesh.cells.size(), 7u);
@@ -188,9 +186,8 @@ TEST(MeshRepair, SmoothingUntangles)
 /// An inner vertex of two cells goes.
 TEST(MeshRepair, DoubletsAreJoined)
 {
-  NewMesh made =
-      mesh_of({ Point(1, 0), Point(3, 0), Point(1, 2), Point(3, 2), Point(2, 1) },
-              { { { 0, 1, 4, 3 } }, { { 0, 4, 2, 3 } } }, { 0, 1, 3, 2 });
+  NewMesh made = mesh_of({ Point(1, 0), Point(3, 0), Point(1, 2), Point(3, 2), Point(2, 1) },
+                         { { { 0, 1, 4, 3 } }, { { 0, 4, 2, 3 } } }, { 0, 1, 3, 2 });
   EXPECT_EQ(repair_topology(made), 1u);
   EXPECT_EQ(made.mesh.cells.size(), 1u);
   EXPECT_EQ(made.mesh.vertices.size(), 4u);

@@ -188,18 +188,18 @@ namespace axiforge::meshing
       std::map<unsigned int, Vector2> arriving, leaving;
       for (unsigned int e = 0; e < made.mesh.boundary_edges.size(); ++e)
         {
-          const auto &edge     = made.mesh.boundary_edges[e];
-          const Point x0       = made.mesh.vertices[edge.v0];
-          const Point x1       = made.mesh.vertices[edge.v1];
-          const Point m        = made.boundary[e][2].position;
-          leaving[edge.v0]     = 4. * (m - x0) - (x1 - x0);
-          arriving[edge.v1]    = (x1 - x0) - 4. * (m - x0) + 2. * (x1 - x0);
+          const auto &edge  = made.mesh.boundary_edges[e];
+          const Point x0    = made.mesh.vertices[edge.v0];
+          const Point x1    = made.mesh.vertices[edge.v1];
+          const Point m     = made.boundary[e][2].position;
+          leaving[edge.v0]  = 4. * (m - x0) - (x1 - x0);
+          arriving[edge.v1] = (x1 - x0) - 4. * (m - x0) + 2. * (x1 - x0);
         }
       std::map<unsigned int, double> angles;
       for (const auto &[v, in] : arriving)
         {
           const Vector2 out = leaving[v];
-          angles[v] = M_PI - std::atan2(in[0] * out[1] - in[1] * out[0], in * out);
+          angles[v]         = M_PI - std::atan2(in[0] * out[1] - in[1] * out[0], in * out);
         }
       return angles;
     }
@@ -237,7 +237,7 @@ namespace axiforge::meshing
       {
         const unsigned int column[9] = { 0, 2, 0, 2, 0, 2, 1, 1, 1 },
                            row[9]    = { 0, 0, 2, 2, 1, 1, 0, 2, 1 };
-        const double       inside    = 0.5 - std::sqrt(0.15);
+        const double inside          = 0.5 - std::sqrt(0.15);
         for (unsigned int q = 0; q < n; ++q)
           {
             double u[2][3], du[2][3];
@@ -263,9 +263,8 @@ namespace axiforge::meshing
 
 
     /// Determinants at the samples, and |J|^2 / 2.
-    void sample(const std::array<Point, 9> &x,
-                double (&det)[Samples::n],
-                double (&half)[Samples::n])
+    void
+    sample(const std::array<Point, 9> &x, double (&det)[Samples::n], double (&half)[Samples::n])
     {
       const Samples &samples = Samples::get();
       for (unsigned int q = 0; q < Samples::n; ++q)
@@ -275,9 +274,9 @@ namespace axiforge::meshing
             for (unsigned int c = 0; c < 2; ++c)
               for (unsigned int k = 0; k < 2; ++k)
                 J[c][k] += x[a][c] * samples.d[q][a][k];
-          det[q]  = J[0][0] * J[1][1] - J[0][1] * J[1][0];
-          half[q] = 0.5 * (J[0][0] * J[0][0] + J[0][1] * J[0][1] + J[1][0] * J[1][0] +
-                           J[1][1] * J[1][1]);
+          det[q] = J[0][0] * J[1][1] - J[0][1] * J[1][0];
+          half[q] =
+              0.5 * (J[0][0] * J[0][0] + J[0][1] * J[0][1] + J[1][0] * J[1][0] + J[1][1] * J[1][1]);
         }
     }
 

@@ -74,9 +74,9 @@ namespace axiforge::meshing
               continue;
             nearest = t;
             // A mirror line is half way through.
-            result = is_mirror(a)                        ? 2 * t
+            result = is_mirror(a)                      ? 2 * t
                      : a.inward * from.inward < facing ? t
-                                                         : std::numeric_limits<double>::max();
+                                                       : std::numeric_limits<double>::max();
           }
       return result;
     }
@@ -127,10 +127,9 @@ namespace axiforge::meshing
                             const double        size)
   {
     const scene::RemeshingParameters &wanted = scene.remeshing;
-    SizeField                         field(size,
-                                            wanted.smallest_size > 0 ? wanted.smallest_size : smallest_share * size,
-                                            wanted.growth);
-    const Samples                     samples = outline.sample(0.2 * size);
+    SizeField field(size, wanted.smallest_size > 0 ? wanted.smallest_size : smallest_share * size,
+                    wanted.growth);
+    const Samples samples = outline.sample(0.2 * size);
     if (wanted.contact_refinement > 1)
       for (const Point &end : outline.contact_ends())
         field.demand(end, size / wanted.contact_refinement);

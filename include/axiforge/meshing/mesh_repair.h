@@ -23,14 +23,14 @@ namespace axiforge::meshing
   void add_boundary_row(NewMesh &made);
 
   /**
-   * Moves the inner vertices to where the cells are best: the sum of 1 / h(d)^2 over corners and inner
-   * points of the cells is smallest, with
+   * Moves the inner vertices to where the cells are best: the sum of 1 / h(d)^2 over corners and
+   * inner points of the cells is smallest, with
    *
    *   d = 2 det J / |J|^2,   h(d) = (d + sqrt(d^2 + 4 delta^2)) / 2,
    *
-   * vertex by vertex with Newton's method. d is 1 in a square and negative in an inverted cell; delta > 0
-   * only while there are such, which h then turns over (Escobar et al., Comput. Methods Appl. Mech.
-   * Engrg. 192 (2003) 2775-2787). Boundary vertices stay. Sets the cells' nodes.
+   * vertex by vertex with Newton's method. d is 1 in a square and negative in an inverted cell;
+   * delta > 0 only while there are such, which h then turns over (Escobar et al., Comput. Methods
+   * Appl. Mech. Engrg. 192 (2003) 2775-2787). Boundary vertices stay. Sets the cells' nodes.
    */
   void smooth(NewMesh &made, unsigned int sweeps);
 } // namespace axiforge::meshing
