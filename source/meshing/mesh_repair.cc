@@ -281,6 +281,10 @@ namespace axiforge::meshing
     }
 
 
+    /// A cell whose worst det J / (|J|^2 / 2) is above this (1: a square) is left as it is.
+    constexpr double good_cell = 0.6;
+
+
     class Smoother
     {
     public:
@@ -289,6 +293,7 @@ namespace axiforge::meshing
           , middles(boundary_middles(made))
           , cells(cells_of_vertices(mesh))
           , fixed(on_boundary(mesh))
+          , quality(mesh.cells.size())
       {
       }
 
@@ -298,7 +303,9 @@ namespace axiforge::meshing
         set_delta();
         double largest = 0;
         for (unsigned int v = 0; v < mesh.vertices.size(); ++v)
-          if (!fixed[v])
+          if (!fixed[v] && std::any_of(cells[v].begin(), cells[v].end(), [&](const unsigned int c) {
+                return quality[c] < good_cell;
+              }))
             largest = std::max(largest, move(v));
         return largest;
       }
@@ -331,8 +338,10 @@ namespace axiforge::meshing
           {
             double det[Samples::n], half[Samples::n];
             sample(mesh.cell_nodes[c], det, half);
+            quality[c] = 1;
             for (unsigned int q = 0; q < Samples::n; ++q)
-              least = std::min(least, det[q] / half[q]);
+              quality[c] = std::min(quality[c], det[q] / half[q]);
+            least = std::min(least, quality[c]);
           }
         constexpr double small = 0.05;
         delta                  = least < small ? std::sqrt(small * (small - least)) : 0;
@@ -383,6 +392,7 @@ namespace axiforge::meshing
       std::vector<std::vector<unsigned int>> cells;
       std::vector<bool>                      fixed;
       double                                 delta = 0;
+      std::vector<double>                    quality; ///< of the cells at the start of the sweep
     };
   } // namespace
 

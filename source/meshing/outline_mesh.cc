@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <utility>
 
 #include <deal.II/base/quadrature_lib.h>
 
@@ -26,13 +27,13 @@ namespace axiforge::meshing
     };
 
     /// Worst Jacobian from which on the first mesh is taken without trying the other algorithms.
-    constexpr double good_enough = 0.3;
+    constexpr double good_enough = 0.25;
 
     /// Below this a mesh is not worth having.
     constexpr double too_bad = 0.02;
 
     /// Of the vertices inside; they stop where nothing moves any more.
-    constexpr unsigned int smoothing_sweeps = 30;
+    constexpr unsigned int smoothing_sweeps = 15;
 
     /// What gmsh's entities stand for.
     struct Model
@@ -163,6 +164,51 @@ namespace axiforge::meshing
     }
 
 
+    /// Whether chords of the outline cross, of every or of every second vertex: gmsh would divide
+    /// them again and again.
+    bool crosses_itself(const std::vector<NewLoop> &loops)
+    {
+      for (const unsigned int stride : { 1u, 2u })
+        {
+          std::vector<std::pair<Point, Point>> chords;
+          for (const NewLoop &loop : loops)
+            for (unsigned int k = 0; k < loop.vertices.size(); k += stride)
+              chords.emplace_back(loop.vertices[k].position,
+                                  loop.vertices[(k + stride) % loop.vertices.size()].position);
+          const auto left = [](const Point &a, const Point &b, const Point &c) {
+            return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+          };
+          for (std::size_t i = 0; i < chords.size(); ++i)
+            for (std::size_t j = i + 1; j < chords.size(); ++j)
+              {
+                const auto &[a, b] = chords[i];
+                const auto &[c, d] = chords[j];
+                if (left(a, b, c) * left(a, b, d) < 0 && left(c, d, a) * left(c, d, b) < 0)
+                  return true;
+              }
+        }
+      return false;
+    }
+
+
+    /// Whether the sides with one cell are the boundary edges, and no side has more than two cells.
+    bool keeps_boundary(const WorkpieceMesh &mesh)
+    {
+      using Edge = std::pair<unsigned int, unsigned int>;
+      constexpr std::array<std::array<unsigned int, 2>, 4> sides = {
+        { { { 0, 1 } }, { { 1, 3 } }, { { 3, 2 } }, { { 2, 0 } } }
+      };
+      std::map<Edge, int> n_cells;
+      for (const auto &cell : mesh.cells)
+        for (const auto &[a, b] : sides)
+          ++n_cells[std::minmax(cell[a], cell[b])];
+      for (const WorkpieceMesh::BoundaryEdge &edge : mesh.boundary_edges)
+        ++n_cells[std::minmax(edge.v0, edge.v1)];
+      return std::all_of(n_cells.begin(), n_cells.end(),
+                         [](const auto &entry) { return entry.second == 2; });
+    }
+
+
     NewMesh run_gmsh(const GmshSession          &session,
                      const int                   algorithm,
                      const int                   recombination,
@@ -234,7 +280,9 @@ namespace axiforge::meshing
     };
     const auto consider = [&](NewMesh &made) {
       made.mesh.boundary_ids  = boundary_ids;
-      const std::string fault = fault_of_mesh(made.mesh);
+      const std::string fault = keeps_boundary(made.mesh)
+                                    ? fault_of_mesh(made.mesh)
+                                    : "gmsh did not keep the boundary as it was given";
       const double      value = fault.empty() ? smallest_scaled_jacobian(made.mesh) : -1;
       if (value > best_value)
         {
@@ -245,6 +293,11 @@ namespace axiforge::meshing
         best.fault =
             fault.empty() ? fmt::format("the best mesh has a Jacobian of {:.3g}", value) : fault;
     };
+    if (crosses_itself(loops))
+      {
+        best.fault = "the outline of the workpiece crosses itself";
+        return best;
+      }
     GmshSession          session;
     std::vector<NewMesh> all;
     for (const auto &[algorithm, recombination] : algorithms)

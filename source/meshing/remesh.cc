@@ -36,6 +36,13 @@ namespace axiforge::meshing
     constexpr double good_mesh = 0.2;
 
 
+    /// Gaps between surface and tool that are closed, over the element size.
+    constexpr double pocket_width = 0.5;
+
+    /// Free surface that curls within four times this is cut, over the element size.
+    constexpr double curl_width = 0.5;
+
+
     struct Made
     {
       NewMesh mesh;
@@ -67,36 +74,44 @@ namespace axiforge::meshing
                    const double        volume)
     {
       Made          made;
-      const Outline outline(old, scene, state.time);
-      const double  area  = outline.area();
-      const double  size  = scene.remeshing.element_size > 0
-                                ? scene.remeshing.element_size
-                                : size_for_cells * std::sqrt(area / state.remeshing.wanted_cells);
-      SizeField     field = make_size_field(outline, old, scene, state.time, size);
-      // Where the demands ask for too many cells, all of them are cut back alike.
-      const double cells = cells_of(field, old);
-      field.scale(std::max(1., std::sqrt(cells / scene.remeshing.most_cells)));
-      // Another division of the outline helps where the first gives no good mesh.
-      made.mesh.fault = "gmsh makes no sound mesh";
-      double best     = -1;
-      for (const double factor : { 1., 0.93, 1.07, 0.86, 0.8, 1.15 })
+      const Outline present(old, scene, state.time);
+      const double  area = present.area();
+      const double  size = scene.remeshing.element_size > 0
+                               ? scene.remeshing.element_size
+                               : size_for_cells * std::sqrt(area / state.remeshing.wanted_cells);
+      made.mesh.fault    = "gmsh makes no sound mesh";
+      double best        = -1;
+      // Where the outline is too rugged for a mesh, more of it is mended.
+      for (const double mending : { 1., 2., 4. })
         {
-          SizeField scaled = field;
-          scaled.scale(factor);
-          const std::vector<NewLoop> loops = outline.divide(scaled);
-          NewMesh                    mesh  = mesh_outline(loops, scaled, state.boundary_ids);
-          if (!mesh.fault.empty())
+          Outline outline = present;
+          outline.close_pockets(mending * pocket_width * size);
+          outline.cut_curls(mending * curl_width * size);
+          SizeField field = make_size_field(outline, old, scene, state.time, size);
+          // Where the demands ask for too many cells, all of them are cut back alike.
+          field.scale(std::max(1., std::sqrt(cells_of(field, old) / scene.remeshing.most_cells)));
+          // Another division of the outline helps where the first gives no good mesh.
+          for (const double factor : { 1., 0.93, 1.07, 0.86, 0.8, 1.15 })
             {
-              if (best < 0)
-                made.mesh.fault = mesh.fault;
-              continue;
+              SizeField scaled = field;
+              scaled.scale(factor);
+              const std::vector<NewLoop> loops = outline.divide(scaled);
+              NewMesh                    mesh  = mesh_outline(loops, scaled, state.boundary_ids);
+              if (!mesh.fault.empty())
+                {
+                  if (best < 0)
+                    made.mesh.fault = mesh.fault;
+                  continue;
+                }
+              if (const double value = smallest_scaled_jacobian(mesh.mesh); value > best)
+                {
+                  made.mesh = std::move(mesh);
+                  best      = value;
+                }
+              if (best > good_mesh)
+                break;
             }
-          if (const double value = smallest_scaled_jacobian(mesh.mesh); value > best)
-            {
-              made.mesh = std::move(mesh);
-              best      = value;
-            }
-          if (best > good_mesh)
+          if (best > 0)
             break;
         }
       if (!made.mesh.fault.empty())

@@ -40,17 +40,17 @@ namespace axiforge::process
       constexpr unsigned int repeats_before_remeshing = 2;
       if (const std::string reason = meshing::reason_to_remesh(scene, state); !reason.empty())
         remesh(scene, state, solver, progress, reason);
-      const double time_step = choose_step_size(scene, state, last);
       if (scene.remeshing.enabled && state.step > 0 && state.remeshing.last_attempt < state.step)
         try
           {
-            return advance(scene, state, *solver, time_step, last, repeats_before_remeshing);
+            return advance(scene, state, *solver, choose_step_size(scene, state, last), last,
+                           repeats_before_remeshing);
           }
         catch (const ComputationError &)
           {
             remesh(scene, state, solver, progress, "a step failed");
           }
-      return advance(scene, state, *solver, time_step, last);
+      return advance(scene, state, *solver, choose_step_size(scene, state, last), last);
     }
 
 

@@ -54,15 +54,15 @@ namespace axiforge
     auto &[step, time, time_step, stroke, tools, boundaries, gauges, volume, relative_volume_change,
            power_tools, power_boundaries, power_plastic, power_friction, power_contact,
            power_volume, power_residual, largest_strain, largest_strain_rate, smallest_jacobian,
-           smallest_vertex_jacobian, largest_radius, height, fill, end_force, cells, unknowns, iterations,
-           set_changes, repeats, residual, divergence, times, remeshings, remeshing_volume_jump,
-           remeshing_strain_jump, errors] = object;
+           smallest_vertex_jacobian, largest_radius, height, fill, end_force, cells, unknowns,
+           iterations, set_changes, repeats, residual, divergence, times, remeshings,
+           remeshing_volume_jump, remeshing_strain_jump, errors] = object;
     archive(step, time, time_step, stroke, tools, boundaries, gauges, volume,
             relative_volume_change, power_tools, power_boundaries, power_plastic, power_friction,
             power_contact, power_volume, power_residual, largest_strain, largest_strain_rate,
-            smallest_jacobian, smallest_vertex_jacobian, largest_radius, height, fill, end_force, cells,
-            unknowns, iterations, set_changes, repeats, residual, divergence, times, remeshings,
-            remeshing_volume_jump, remeshing_strain_jump, errors);
+            smallest_jacobian, smallest_vertex_jacobian, largest_radius, height, fill, end_force,
+            cells, unknowns, iterations, set_changes, repeats, residual, divergence, times,
+            remeshings, remeshing_volume_jump, remeshing_strain_jump, errors);
   }
 
   template <typename Archive> void visit(Archive &archive, ResultsProgress &object)

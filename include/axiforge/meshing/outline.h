@@ -67,6 +67,22 @@ namespace axiforge::meshing
   public:
     Outline(const Snapshot &snapshot, const scene::Scene &scene, double time);
 
+    /**
+     * Closes pockets: free surface between two places on the same tool goes on to the tool if they
+     * are closer than @p width [mm] and the gap between has an area below a tenth of its square.
+     * Nodes that are caught before their neighbours leave such gaps, which fold over into
+     * themselves in the next steps. Returns their number.
+     */
+    unsigned int close_pockets(double width);
+
+    /**
+     * Cuts off notches and curls of the free surface: where it comes back to within half of its own
+     * way, and that way is shorter than four times the width [mm], a straight line takes its place.
+     * Perfectly plastic surfaces zig-zag and overlap below the edge of a platen. Returns their
+     * number.
+     */
+    unsigned int cut_curls(double width);
+
     /// A place of the outline.
     struct Sample
     {
@@ -119,6 +135,7 @@ namespace axiforge::meshing
                                          const std::vector<double> &start,
                                          const SizeField           &field,
                                          std::vector<Corner>       &found) const;
+    void fair(NewLoop &loop) const; ///< takes waves of two edges from the free surface
     NewNode
     middle_node(const Loop &loop, const Place &place, const Point &from, const Point &to) const;
     Point on_tool(int tool, const Point &x) const;

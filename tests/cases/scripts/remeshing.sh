@@ -36,4 +36,22 @@ name=two_ranks
 ranks=2 run two_ranks 0 "${scene[@]}"
 compare one_rank/output/history.csv two_ranks/output/history.csv -v rel=1e-6 -v only="$shape"
 
+# Cells that are divided and joined between the remeshings.
+both=("${scene[@]}" --set "Refinement/Enabled = true" --set "Refinement/Every steps = 4")
+name=both_one_rank
+run both_one_rank 0 "${both[@]}"
+name=both_two_ranks
+ranks=2 run both_two_ranks 0 "${both[@]}"
+compare both_one_rank/output/history.csv both_two_ranks/output/history.csv -v rel=1e-6 -v only="$shape"
+
+# A real die: a fillet that surface wraps around, a hole that it slides up in, two tools.
+name=spike
+run spike 0 spike.prm --set "Output/Fields = none"
+awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) column[$i] = i }
+  NR > 1 { stroke = $column["stroke_mm"]; change = $column["relative_volume_change"]; n = $column["remeshings"]
+    if (change < 0) change = -change
+    if (change > worst) worst = change }
+  END { exit !(stroke > 29.999 && worst < 1e-3 && n >= 3) }' spike/output/history.csv ||
+  fail "the spike is not forged to its end, or its volume not kept to 0.1 %"
+
 finish
