@@ -211,13 +211,13 @@ TEST(Checkpoint, PhysicsMustBeTheSameAndTheEndNeedNot)
   const std::string before = print({});
   for (const char *entry : { "Process/End stroke = 12", "Output/Fields = none", "Title = other",
                              "Checkpoint/Every steps = 3", "Flow solver/Most iterations = 99" })
-    EXPECT_NO_THROW(process::check_same_scene(before, print({ entry }), "c.axi")) << entry;
+    EXPECT_NO_THROW(process::check_same_scene(before, print({ entry }), {}, "c.axi")) << entry;
   for (const char *entry :
        { "Material/Strength coefficient = 101", "Tool upper/Friction/Factor = 0.7",
          "Tool upper/Motion/Velocity = 0, -11", "Workpiece/Refinement levels = 1" })
     {
       const std::string message =
-          message_of([&] { process::check_same_scene(before, print({ entry }), "c.axi"); });
+          message_of([&] { process::check_same_scene(before, print({ entry }), {}, "c.axi"); });
       const std::string name = std::string(entry).substr(0, std::string(entry).find(" ="));
       EXPECT_NE(message.find("\"" + name + "\""), std::string::npos) << message;
     }
