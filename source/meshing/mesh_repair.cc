@@ -226,6 +226,7 @@ namespace axiforge::meshing
     {
       static constexpr unsigned int n = 8;
       double                        d[n][9][2];
+      double                        place[n][2];
 
       static const Samples &get()
       {
@@ -245,6 +246,7 @@ namespace axiforge::meshing
               {
                 const double end = (c == 0 ? q % 2 : q / 2 % 2);
                 const double t   = q < 4 ? end : (end > 0.5 ? 1 - inside : inside);
+                place[q][c]      = t;
                 u[c][0]          = (1 - t) * (1 - 2 * t);
                 u[c][1]          = 4 * t * (1 - t);
                 u[c][2]          = t * (2 * t - 1);
@@ -281,6 +283,30 @@ namespace axiforge::meshing
     }
 
 
+    /// The same of a cell with straight edges, from its vertices: the map is bilinear.
+    void sample_straight(const WorkpieceMesh               &mesh,
+                         const std::array<unsigned int, 4> &cell,
+                         double (&det)[Samples::n],
+                         double (&half)[Samples::n])
+    {
+      const Point &a = mesh.vertices[cell[0]], &b = mesh.vertices[cell[1]],
+                  &c = mesh.vertices[cell[2]], &d = mesh.vertices[cell[3]];
+      const Samples &samples = Samples::get();
+      const double bottom[2] = { b[0] - a[0], b[1] - a[1] }, top[2] = { d[0] - c[0], d[1] - c[1] };
+      const double left[2] = { c[0] - a[0], c[1] - a[1] }, right[2] = { d[0] - b[0], d[1] - b[1] };
+      for (unsigned int q = 0; q < Samples::n; ++q)
+        {
+          const double x = samples.place[q][0], y = samples.place[q][1];
+          const double J[4] = { bottom[0] + y * (top[0] - bottom[0]),
+                                left[0] + x * (right[0] - left[0]),
+                                bottom[1] + y * (top[1] - bottom[1]),
+                                left[1] + x * (right[1] - left[1]) };
+          det[q]            = J[0] * J[3] - J[1] * J[2];
+          half[q]           = 0.5 * (J[0] * J[0] + J[1] * J[1] + J[2] * J[2] + J[3] * J[3]);
+        }
+    }
+
+
     /// A cell whose worst det J / (|J|^2 / 2) is above this (1: a square) is left as it is.
     constexpr double good_cell = 0.6;
 
@@ -294,31 +320,43 @@ namespace axiforge::meshing
           , cells(cells_of_vertices(mesh))
           , fixed(on_boundary(mesh))
           , quality(mesh.cells.size())
+          , curved(mesh.cells.size(), false)
       {
+        for (unsigned int c = 0; c < mesh.cells.size(); ++c)
+          for (const auto &[a, b, m] : edges_of_cell)
+            if (middles.count(edge_of(mesh.cells[c][a], mesh.cells[c][b])))
+              curved[c] = true;
       }
 
       /// Largest way of a vertex in units of its cells' size.
-      double sweep()
+      double sweep(const bool all)
       {
         set_delta();
         double largest = 0;
         for (unsigned int v = 0; v < mesh.vertices.size(); ++v)
-          if (!fixed[v] && std::any_of(cells[v].begin(), cells[v].end(), [&](const unsigned int c) {
-                return quality[c] < good_cell;
-              }))
+          if (!fixed[v] &&
+              (all || std::any_of(cells[v].begin(), cells[v].end(),
+                                  [&](const unsigned int c) { return quality[c] < good_cell; })))
             largest = std::max(largest, move(v));
         return largest;
       }
 
     private:
+      void measure(const unsigned int c, double (&det)[Samples::n], double (&half)[Samples::n])
+      {
+        if (!curved[c])
+          return sample_straight(mesh, mesh.cells[c], det, half);
+        place_nodes(mesh, middles, c);
+        sample(mesh.cell_nodes[c], det, half);
+      }
+
       double energy(const unsigned int v)
       {
         double sum = 0;
         for (const unsigned int c : cells[v])
           {
-            place_nodes(mesh, middles, c);
             double det[Samples::n], half[Samples::n];
-            sample(mesh.cell_nodes[c], det, half);
+            measure(c, det, half);
             for (unsigned int q = 0; q < Samples::n; ++q)
               {
                 const double d = det[q] / half[q];
@@ -337,7 +375,7 @@ namespace axiforge::meshing
         for (unsigned int c = 0; c < mesh.cells.size(); ++c)
           {
             double det[Samples::n], half[Samples::n];
-            sample(mesh.cell_nodes[c], det, half);
+            measure(c, det, half);
             quality[c] = 1;
             for (unsigned int q = 0; q < Samples::n; ++q)
               quality[c] = std::min(quality[c], det[q] / half[q]);
@@ -352,7 +390,8 @@ namespace axiforge::meshing
         const Point start = mesh.vertices[v];
         double      size  = 0;
         for (const unsigned int c : cells[v])
-          size = std::max(size, mesh.cell_nodes[c][0].distance(mesh.cell_nodes[c][3]));
+          size = std::max(
+              size, mesh.vertices[mesh.cells[c][0]].distance(mesh.vertices[mesh.cells[c][3]]));
         const double step = 1e-3 * size;
         const auto   at   = [&](const double r, const double z) {
           mesh.vertices[v] = start + Vector2({ r, z });
@@ -393,6 +432,7 @@ namespace axiforge::meshing
       std::vector<bool>                      fixed;
       double                                 delta = 0;
       std::vector<double>                    quality; ///< of the cells at the start of the sweep
+      std::vector<bool>                      curved;  ///< cells with an edge on the boundary
     };
   } // namespace
 
@@ -424,12 +464,12 @@ namespace axiforge::meshing
   }
 
 
-  void smooth(NewMesh &made, const unsigned int sweeps)
+  void smooth(NewMesh &made, const unsigned int sweeps, const unsigned int whole_sweeps)
   {
     place_cell_nodes(made);
     Smoother smoother(made);
     for (unsigned int i = 0; i < sweeps; ++i)
-      if (smoother.sweep() < 1e-3)
+      if (smoother.sweep(i < whole_sweeps) < 1e-3)
         break;
     place_cell_nodes(made);
   }
