@@ -11,7 +11,7 @@ DefineConstant[
   BossFillet    = {5, Name "BossFillet"},     // at the bottom of the boss
   MouthRadius   = {8, Name "MouthRadius"},    // where the boss meets the flange
   FlangeFillet  = {5, Name "FlangeFillet"},   // at the rim of the flange
-  LandRadius    = {2, Name "LandRadius"},     // at the entrance of the land
+  LandRadius    = {3, Name "LandRadius"},     // at the entrance of the land
   GutterDepth   = {4, Name "GutterDepth"},
   FaceRadius    = {130, Name "FaceRadius"}
 ];

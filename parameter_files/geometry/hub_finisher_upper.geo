@@ -17,7 +17,7 @@ DefineConstant[
   BossFillet    = {4, Name "BossFillet"},        // at the end of the upper boss
   MouthRadius   = {8, Name "MouthRadius"},       // where the boss meets the flange
   FlangeFillet  = {5, Name "FlangeFillet"},      // at the rim of the flange
-  LandRadius    = {2, Name "LandRadius"},        // at the entrance of the land
+  LandRadius    = {3, Name "LandRadius"},        // at the entrance of the land
   GutterDepth   = {4, Name "GutterDepth"},
   FaceRadius    = {130, Name "FaceRadius"}
 ];

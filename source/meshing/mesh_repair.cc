@@ -307,10 +307,6 @@ namespace axiforge::meshing
     }
 
 
-    /// A cell whose worst det J / (|J|^2 / 2) is above this (1: a square) is left as it is.
-    constexpr double good_cell = 0.6;
-
-
     class Smoother
     {
     public:
@@ -319,7 +315,6 @@ namespace axiforge::meshing
           , middles(boundary_middles(made))
           , cells(cells_of_vertices(mesh))
           , fixed(on_boundary(mesh))
-          , quality(mesh.cells.size())
           , curved(mesh.cells.size(), false)
       {
         for (unsigned int c = 0; c < mesh.cells.size(); ++c)
@@ -329,14 +324,12 @@ namespace axiforge::meshing
       }
 
       /// Largest way of a vertex in units of its cells' size.
-      double sweep(const bool all)
+      double sweep()
       {
         set_delta();
         double largest = 0;
         for (unsigned int v = 0; v < mesh.vertices.size(); ++v)
-          if (!fixed[v] &&
-              (all || std::any_of(cells[v].begin(), cells[v].end(),
-                                  [&](const unsigned int c) { return quality[c] < good_cell; })))
+          if (!fixed[v])
             largest = std::max(largest, move(v));
         return largest;
       }
@@ -376,10 +369,8 @@ namespace axiforge::meshing
           {
             double det[Samples::n], half[Samples::n];
             measure(c, det, half);
-            quality[c] = 1;
             for (unsigned int q = 0; q < Samples::n; ++q)
-              quality[c] = std::min(quality[c], det[q] / half[q]);
-            least = std::min(least, quality[c]);
+              least = std::min(least, det[q] / half[q]);
           }
         constexpr double small = 0.05;
         delta                  = least < small ? std::sqrt(small * (small - least)) : 0;
@@ -431,8 +422,7 @@ namespace axiforge::meshing
       std::vector<std::vector<unsigned int>> cells;
       std::vector<bool>                      fixed;
       double                                 delta = 0;
-      std::vector<double>                    quality; ///< of the cells at the start of the sweep
-      std::vector<bool>                      curved;  ///< cells with an edge on the boundary
+      std::vector<bool>                      curved; ///< cells with an edge on the boundary
     };
   } // namespace
 
@@ -464,12 +454,12 @@ namespace axiforge::meshing
   }
 
 
-  void smooth(NewMesh &made, const unsigned int sweeps, const unsigned int whole_sweeps)
+  void smooth(NewMesh &made, const unsigned int sweeps)
   {
     place_cell_nodes(made);
     Smoother smoother(made);
     for (unsigned int i = 0; i < sweeps; ++i)
-      if (smoother.sweep(i < whole_sweeps) < 1e-3)
+      if (smoother.sweep() < 1e-3)
         break;
     place_cell_nodes(made);
   }

@@ -35,10 +35,6 @@ namespace axiforge::meshing
     /// Of the vertices inside; they stop where nothing moves any more.
     constexpr unsigned int smoothing_sweeps = 15;
 
-    /// The first of them take all vertices along, the others those of bad cells: half of the time
-    /// of a run with dies went here with all.
-    constexpr unsigned int whole_sweeps = 10;
-
     /// What gmsh's entities stand for.
     struct Model
     {
@@ -163,7 +159,7 @@ namespace axiforge::meshing
             }
         }
       repair_topology(made);
-      smooth(made, smoothing_sweeps, whole_sweeps);
+      smooth(made, smoothing_sweeps);
       return made;
     }
 
@@ -280,7 +276,7 @@ namespace axiforge::meshing
     best.fault                                             = "gmsh made no mesh";
     double                                      best_value = too_bad;
     constexpr std::array<std::array<int, 2>, 4> algorithms = {
-      { { { 6, 2 } }, { { 6, 3 } }, { { 5, 2 } }, { { 5, 3 } } }
+      { { { 6, 2 } }, { { 5, 2 } }, { { 6, 3 } }, { { 5, 3 } } }
     };
     const auto consider = [&](NewMesh &made) {
       made.mesh.boundary_ids  = boundary_ids;
@@ -320,7 +316,7 @@ namespace axiforge::meshing
       if (best_value < good_enough)
         {
           add_boundary_row(made);
-          smooth(made, smoothing_sweeps, whole_sweeps);
+          smooth(made, smoothing_sweeps);
           consider(made);
         }
     return best;

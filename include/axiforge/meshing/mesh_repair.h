@@ -31,10 +31,6 @@ namespace axiforge::meshing
    * vertex by vertex with Newton's method. d is 1 in a square and negative in an inverted cell;
    * delta > 0 only while there are such, which h then turns over (Escobar et al., Comput. Methods
    * Appl. Mech. Engrg. 192 (2003) 2775-2787). Boundary vertices stay. Sets the cells' nodes.
-   * @param whole_sweeps the first sweeps, over all vertices; the rest is over those of cells with
-   * d < 0.6 somewhere
    */
-  void smooth(NewMesh     &made,
-              unsigned int sweeps,
-              unsigned int whole_sweeps = static_cast<unsigned int>(-1));
+  void smooth(NewMesh &made, unsigned int sweeps);
 } // namespace axiforge::meshing
