@@ -232,7 +232,8 @@ namespace axiforge::process
         throw InputError::entry(
             "Flow solver/Linear solver", "cholmod", "CHOLMOD works on one rank only",
             "'automatic' or 'mumps' on several ranks", "Or start the program without mpirun");
-    if (!start.placement.any())
+    // A run makes the scene before it writes anything; a chain has written its folder by then.
+    if (!start.placement.any() && (options.validate || !start.operation.empty()))
       scene::in_operation(start.operation,
                           [&] { const scene::Scene check(start, meshing::outline_of(mesh)); });
 

@@ -310,6 +310,19 @@ namespace axiforge::scene
   }
 
 
+  namespace
+  {
+    /// Declares what stands in a section.
+    void
+    in_section(ParameterHandler &prm, const std::string &name, const std::function<void()> &declare)
+    {
+      prm.enter_subsection(name);
+      declare();
+      prm.leave_subsection();
+    }
+  } // namespace
+
+
   void ToolParameters::declare(ParameterHandler &prm)
   {
     prm.add_parameter(
@@ -318,12 +331,8 @@ namespace axiforge::scene
         "motion until it touches the workpiece, and starts there; the stroke counts from there.",
         Patterns::Selection("as drawn|touching"));
     geometry.declare_profile(prm);
-    prm.enter_subsection("Motion");
-    motion.declare(prm);
-    prm.leave_subsection();
-    prm.enter_subsection("Friction");
-    friction.declare(prm);
-    prm.leave_subsection();
+    in_section(prm, "Motion", [&] { motion.declare(prm); });
+    in_section(prm, "Friction", [&] { friction.declare(prm); });
   }
 
 
@@ -387,72 +396,38 @@ namespace axiforge::scene
         "Regions", region_names,
         "Names of boxes with finer cells, separated by commas; each has its section 'Region NAME'. "
         "They need \"Refinement/Enabled = true\" or a target accuracy.");
-    prm.enter_subsection("Placement");
-    placement.declare(prm);
-    prm.leave_subsection();
+    in_section(prm, "Placement", [&] { placement.declare(prm); });
     prm.add_parameter("Gauges", gauge_names,
                       "Names of measurements of the shape, separated by commas; each has its "
                       "section 'Gauge NAME' and its column gauge_NAME_mm in history.csv.");
-    prm.enter_subsection("Workpiece");
-    workpiece.declare_workpiece(prm);
-    prm.leave_subsection();
-    prm.enter_subsection("Material");
-    material.declare(prm);
-    prm.leave_subsection();
+    in_section(prm, "Workpiece", [&] { workpiece.declare_workpiece(prm); });
+    in_section(prm, "Material", [&] { material.declare(prm); });
     for (ToolParameters &tool : tools)
       {
-        prm.enter_subsection("Tool " + tool.name);
-        tool.declare(prm);
-        prm.leave_subsection();
+        in_section(prm, "Tool " + tool.name, [&] { tool.declare(prm); });
       }
     for (BoundaryParameters &boundary : boundaries)
       {
-        prm.enter_subsection("Boundary " + boundary.name);
-        boundary.declare(prm);
-        prm.leave_subsection();
+        in_section(prm, "Boundary " + boundary.name, [&] { boundary.declare(prm); });
       }
     for (RegionParameters &region : regions)
       {
-        prm.enter_subsection("Region " + region.name);
-        region.declare(prm);
-        prm.leave_subsection();
+        in_section(prm, "Region " + region.name, [&] { region.declare(prm); });
       }
     for (GaugeParameters &gauge : gauges)
       {
-        prm.enter_subsection("Gauge " + gauge.name);
-        gauge.declare(prm);
-        prm.leave_subsection();
+        in_section(prm, "Gauge " + gauge.name, [&] { gauge.declare(prm); });
       }
-    prm.enter_subsection("Process");
-    process.declare(prm);
-    prm.leave_subsection();
-    prm.enter_subsection("Time stepping");
-    time.declare(prm);
-    prm.leave_subsection();
-    prm.enter_subsection("Flow solver");
-    flow.declare(prm);
-    prm.leave_subsection();
-    prm.enter_subsection("Refinement");
-    refinement.declare(prm);
-    prm.leave_subsection();
-    prm.enter_subsection("Remeshing");
-    remeshing.declare(prm);
-    prm.leave_subsection();
-    prm.enter_subsection("Folding");
-    folding.declare(prm);
-    prm.leave_subsection();
-    prm.enter_subsection("Output");
-    output.declare(prm);
-    prm.leave_subsection();
-    prm.enter_subsection("Study");
-    study.declare(prm);
-    prm.leave_subsection();
-    prm.enter_subsection("Checkpoint");
-    checkpoint.declare(prm);
-    prm.leave_subsection();
-    prm.enter_subsection("Accuracy");
-    accuracy.declare(prm);
-    prm.leave_subsection();
+    in_section(prm, "Process", [&] { process.declare(prm); });
+    in_section(prm, "Time stepping", [&] { time.declare(prm); });
+    in_section(prm, "Flow solver", [&] { flow.declare(prm); });
+    in_section(prm, "Refinement", [&] { refinement.declare(prm); });
+    in_section(prm, "Remeshing", [&] { remeshing.declare(prm); });
+    in_section(prm, "Folding", [&] { folding.declare(prm); });
+    in_section(prm, "Output", [&] { output.declare(prm); });
+    in_section(prm, "Study", [&] { study.declare(prm); });
+    in_section(prm, "Checkpoint", [&] { checkpoint.declare(prm); });
+    in_section(prm, "Accuracy", [&] { accuracy.declare(prm); });
   }
 
 

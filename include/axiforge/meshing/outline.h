@@ -48,6 +48,18 @@ namespace axiforge::meshing
     double  parameter(double arc_length) const;
   };
 
+  /// Of a node on free surface.
+  SurfaceNode without_contact();
+
+  /// Between two nodes that touch the same tool, t from 0 at a to 1 at b.
+  SurfaceNode blend(const SurfaceNode &a, const SurfaceNode &b, double t, int tool);
+
+  /// Sets OutlinePiece::arc from its nodes.
+  void measure_arc(OutlinePiece &piece);
+
+  /// Whether this part of the boundary is the axis or the symmetry line.
+  bool is_straight(dealii::types::boundary_id id);
+
   /**
    * The outline of the workpiece as it stands, and its division into new edges.
    *
