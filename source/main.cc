@@ -6,6 +6,7 @@
 
 #include <axiforge/base/blas.h>
 #include <axiforge/base/errors.h>
+#include <axiforge/base/phases.h>
 #include <axiforge/process/run.h>
 #include <axiforge/study/study.h>
 
@@ -32,7 +33,18 @@ namespace
         ->take_all();
     app.add_option("--output", options.output_directory, "Folder of the results");
     app.add_flag("--quiet", options.quiet, "No progress lines");
+    app.add_flag("--timing", options.timing, "At the end, a table of where the time went");
   }
+
+  /// Printed at the end, whichever way that comes.
+  struct TimingTable
+  {
+    ~TimingTable()
+    {
+      if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+        std::cout << axiforge::Phase::table() << std::flush;
+    }
+  };
 } // namespace
 
 
@@ -83,6 +95,9 @@ int main(int argc, char **argv)
     axiforge::restart_with_suitable_blas(argv);
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   axiforge::use_one_thread();
+  if (options.timing)
+    axiforge::Phase::measure_phases();
+  const TimingTable table;
   try
     {
       if (study->parsed())

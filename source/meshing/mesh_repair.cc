@@ -28,6 +28,9 @@ namespace axiforge::meshing
     /// A cell angle above this [rad] has to be mended.
     constexpr double largest_angle = 0.85 * M_PI;
 
+    /// A vertex that moves by less, over the size of its cells, stays where it is.
+    constexpr double at_rest = 1e-3;
+
 
     using Middles = std::map<Edge, Point>;
 
@@ -210,10 +213,13 @@ namespace axiforge::meshing
       unsigned int n_framed = 0;
       for (const auto &[v, angle] : boundary_angles(made))
         {
-          const auto cells = cells_of_vertices(made.mesh)[v];
-          if (cells.size() != 1 || angle < largest_angle)
+          const auto cells = cells_of_vertices(made.mesh);
+          if (cells[v].size() != 1 || angle < largest_angle)
             continue;
-          frame(made.mesh, cells);
+          const auto        &cell = made.mesh.cells[cells[v].front()];
+          const unsigned int opposite =
+              cell[3 - (std::find(cell.begin(), cell.end(), v) - cell.begin())];
+          frame(made.mesh, on_boundary(made.mesh)[opposite] ? cells[v] : cells[opposite]);
           ++n_framed;
         }
       return n_framed;
@@ -316,6 +322,7 @@ namespace axiforge::meshing
           , cells(cells_of_vertices(mesh))
           , fixed(on_boundary(mesh))
           , curved(mesh.cells.size(), false)
+          , due(mesh.vertices.size(), true)
       {
         for (unsigned int c = 0; c < mesh.cells.size(); ++c)
           for (const auto &[a, b, m] : edges_of_cell)
@@ -323,15 +330,23 @@ namespace axiforge::meshing
               curved[c] = true;
       }
 
-      /// Largest way of a vertex in units of its cells' size.
-      double sweep()
+      /// Moves the vertices that are due, and makes those due whose surroundings have moved. False:
+      /// nothing moves any more.
+      bool sweep()
       {
         set_delta();
-        double largest = 0;
+        std::vector<bool> next(mesh.vertices.size(), false);
+        bool              any = false;
         for (unsigned int v = 0; v < mesh.vertices.size(); ++v)
-          if (!fixed[v])
-            largest = std::max(largest, move(v));
-        return largest;
+          if (due[v] && !fixed[v] && move(v) >= at_rest)
+            {
+              any = true;
+              for (const unsigned int c : cells[v])
+                for (const unsigned int w : mesh.cells[c])
+                  next[w] = true;
+            }
+        due.swap(next);
+        return any;
       }
 
     private:
@@ -423,6 +438,7 @@ namespace axiforge::meshing
       std::vector<bool>                      fixed;
       double                                 delta = 0;
       std::vector<bool>                      curved; ///< cells with an edge on the boundary
+      std::vector<bool>                      due;    ///< to be moved in the next sweep
     };
   } // namespace
 
@@ -459,7 +475,7 @@ namespace axiforge::meshing
     place_cell_nodes(made);
     Smoother smoother(made);
     for (unsigned int i = 0; i < sweeps; ++i)
-      if (smoother.sweep() < 1e-3)
+      if (!smoother.sweep())
         break;
     place_cell_nodes(made);
   }

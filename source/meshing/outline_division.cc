@@ -310,7 +310,18 @@ namespace axiforge::meshing
     };
     const auto id_after = [&](const unsigned int k) { return result.ids[k / 2]; };
 
-    // Places that hold the surface back: it moves the more the farther it is from them.
+    // Places that hold the surface back: it moves the more the farther it is from them, and from
+    // the tools that it does not touch: what were pushed into one would be caught in the next step.
+    const auto clearance = [&](const Point &x, const double most) {
+      double least = most;
+      for (unsigned int tool = 0; tool < scene.tools.size(); ++tool)
+        {
+          std::array<tools::Contact, 2> found;
+          if (scene.tools[tool].profile.find(Point(x - shift[tool]), most, found) > 0)
+            least = std::min(least, std::max(0., found[0].gap));
+        }
+      return least;
+    };
     std::vector<double> holds;
     for (unsigned int k = 0; k < 2 * n; ++k)
       if (node_at(k).carried.tool[0] >= 0 || held(id_before(k)) || held(id_after(k)))
@@ -330,8 +341,9 @@ namespace axiforge::meshing
             const double d = std::abs(s - arc[k]);
             distance       = std::min({ distance, d, whole - d });
           }
-        const double  weight = std::min(1., distance / (2 * field.at(node.position)));
         const Point   x      = node.position;
+        const double  far    = 2 * field.at(x);
+        const double  weight = std::min(distance, clearance(x, far)) / far;
         const Vector2 along  = (free_after ? node_at(k + 1).position : x) -
                               (free_before ? node_at(k + 2 * n - 1).position : x);
         const Vector2 normal = Vector2({ along[1], -along[0] }) / along.norm();

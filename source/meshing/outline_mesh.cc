@@ -12,6 +12,7 @@
 
 #include <axiforge/base/errors.h>
 #include <axiforge/base/gmsh_session.h>
+#include <axiforge/base/phases.h>
 #include <axiforge/meshing/mesh_checks.h>
 #include <axiforge/meshing/mesh_repair.h>
 #include <axiforge/meshing/outline_mesh.h>
@@ -158,6 +159,7 @@ namespace axiforge::meshing
                   { { loops[l].vertices[k], loops[l].vertices[next], loops[l].middles[k] } });
             }
         }
+      const Phase phase("repair and smoothing");
       repair_topology(made);
       smooth(made, smoothing_sweeps);
       return made;
@@ -238,7 +240,10 @@ namespace axiforge::meshing
           return static_cast<double>(static_cast<float>(field.at(Point(x, y))));
         });
         std::srand(1); // gmsh shifts points at random, and seeds only once per process
-        gmsh::model::mesh::generate(2);
+        {
+          const Phase phase("gmsh");
+          gmsh::model::mesh::generate(2);
+        }
         gmsh::model::mesh::removeSizeCallback();
         made = attempt(model, loops);
       });
@@ -247,23 +252,27 @@ namespace axiforge::meshing
   } // namespace
 
 
+  static double scaled_jacobian(const std::array<Point, 9> &nodes)
+  {
+    static const dealii::QGauss<2> gauss(3);
+    double                         smallest = 1e300, area = 0;
+    for (unsigned int q = 0; q < gauss.size(); ++q)
+      {
+        const double j = jacobian(nodes, gauss.point(q));
+        smallest       = std::min(smallest, j);
+        area += j * gauss.weight(q);
+      }
+    for (unsigned int v = 0; v < 4; ++v)
+      smallest = std::min(smallest, jacobian(nodes, Point(v % 2, v / 2)));
+    return area > 0 ? smallest / area : -1.;
+  }
+
+
   double smallest_scaled_jacobian(const WorkpieceMesh &mesh)
   {
-    const dealii::QGauss<2> gauss(3);
-    double                  worst = 1;
+    double worst = 1;
     for (const std::array<Point, 9> &nodes : mesh.cell_nodes)
-      {
-        double smallest = 1e300, area = 0;
-        for (unsigned int q = 0; q < gauss.size(); ++q)
-          {
-            const double j = jacobian(nodes, gauss.point(q));
-            smallest       = std::min(smallest, j);
-            area += j * gauss.weight(q);
-          }
-        for (unsigned int v = 0; v < 4; ++v)
-          smallest = std::min(smallest, jacobian(nodes, Point(v % 2, v / 2)));
-        worst = std::min(worst, area > 0 ? smallest / area : -1.);
-      }
+      worst = std::min(worst, scaled_jacobian(nodes));
     return worst;
   }
 
@@ -279,11 +288,13 @@ namespace axiforge::meshing
       { { { 6, 2 } }, { { 5, 2 } }, { { 6, 3 } }, { { 5, 3 } } }
     };
     const auto consider = [&](NewMesh &made) {
+      const Phase phase("quality");
       made.mesh.boundary_ids  = boundary_ids;
       const std::string fault = keeps_boundary(made.mesh)
                                     ? fault_of_mesh(made.mesh)
                                     : "gmsh did not keep the boundary as it was given";
       const double      value = fault.empty() ? smallest_scaled_jacobian(made.mesh) : -1;
+      fprintf(stderr, "      try %zu cells %g %s\n", made.mesh.cells.size(), value, fault.c_str());
       if (value > best_value)
         {
           best       = made;
@@ -298,27 +309,29 @@ namespace axiforge::meshing
         best.fault = "the outline of the workpiece crosses itself";
         return best;
       }
-    GmshSession          session;
-    std::vector<NewMesh> all;
+    GmshSession session;
     for (const auto &[algorithm, recombination] : algorithms)
-      if (best_value < good_enough)
+      {
+        // The blossom's recombination gives the same mesh, as a rule: only if there is none.
+        if (best_value >= good_enough || (recombination == 3 && best.fault.empty()))
+          break;
         try
           {
-            all.push_back(run_gmsh(session, algorithm, recombination, loops, field));
-            consider(all.back());
+            NewMesh made = run_gmsh(session, algorithm, recombination, loops, field);
+            consider(made);
+            if (best_value >= good_enough)
+              break;
+            const Phase phase("repair and smoothing");
+            add_boundary_row(made);
+            smooth(made, smoothing_sweeps);
+            consider(made);
           }
         catch (const std::exception &error) // of gmsh, in its words
           {
             if (!best.fault.empty())
               best.fault = error.what();
           }
-    for (NewMesh &made : all)
-      if (best_value < good_enough)
-        {
-          add_boundary_row(made);
-          smooth(made, smoothing_sweeps);
-          consider(made);
-        }
+      }
     return best;
   }
 

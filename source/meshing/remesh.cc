@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <axiforge/base/errors.h>
+#include <axiforge/base/phases.h>
 #include <axiforge/meshing/adapt.h>
 #include <axiforge/meshing/mesh_checks.h>
 #include <axiforge/meshing/outline_mesh.h>
@@ -73,6 +74,7 @@ namespace axiforge::meshing
                    const State        &state,
                    const double        volume)
     {
+      const Phase   phase("new mesh");
       Made          made;
       const Outline present(old, scene, state.time);
       const double  area = present.area();
@@ -87,7 +89,10 @@ namespace axiforge::meshing
           Outline outline = present;
           outline.close_pockets(mending * pocket_width * size);
           outline.cut_curls(mending * curl_width * size);
-          SizeField field = make_size_field(outline, old, scene, state.time, size);
+          SizeField field = [&] {
+            const Phase phase("size field");
+            return make_size_field(outline, old, scene, state.time, size);
+          }();
           // Where the demands ask for too many cells, all of them are cut back alike.
           field.scale(std::max(1., std::sqrt(cells_of(field, old) / scene.remeshing.most_cells)));
           // Another division of the outline helps where the first gives no good mesh.
@@ -95,8 +100,11 @@ namespace axiforge::meshing
             {
               SizeField scaled = field;
               scaled.scale(factor);
-              const std::vector<NewLoop> loops = outline.divide(scaled);
-              NewMesh                    mesh  = mesh_outline(loops, scaled, state.boundary_ids);
+              const std::vector<NewLoop> loops = [&] {
+                const Phase phase("outline");
+                return outline.divide(scaled);
+              }();
+              NewMesh mesh = mesh_outline(loops, scaled, state.boundary_ids);
               if (!mesh.fault.empty())
                 {
                   if (best < 0)
@@ -117,7 +125,8 @@ namespace axiforge::meshing
       if (!made.mesh.fault.empty())
         return made;
       made.volume_jump = made.mesh.mesh.volume() - volume;
-      made.restored    = restore_volume(made.mesh, volume, size);
+      const Phase volume_phase("volume");
+      made.restored = restore_volume(made.mesh, volume, size);
       return made;
     }
 
@@ -240,6 +249,7 @@ namespace axiforge::meshing
     if (record.last_attempt > 0 && state.step < record.last_attempt + patience &&
         record.jacobian <= 0)
       return "";
+    const Phase    phase("need of a new mesh");
     const Measures measures = measure(state);
     if (measures.smallest_jacobian <
         std::min(limits.smallest_jacobian, worse_jacobian * record.jacobian))
@@ -300,7 +310,10 @@ namespace axiforge::meshing
     state.setup_dofs();
     interpolate_geometry(made.mesh.mesh, state.flow_dofs, state.position);
     state.setup_tables();
-    transfer(old, boundary, state);
+    {
+      const Phase phase("transfer");
+      transfer(old, boundary, state);
+    }
     complete_contacts(scene, state);
 
     const Measures after    = measure(state);

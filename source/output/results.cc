@@ -9,6 +9,7 @@
 
 #include <axiforge/base/collective.h>
 #include <axiforge/base/errors.h>
+#include <axiforge/base/phases.h>
 #include <axiforge/output/results.h>
 
 namespace axiforge::output
@@ -108,6 +109,7 @@ namespace axiforge::output
 
   void Results::write(const State &state, const StepRecord &record)
   {
+    const Phase phase("output");
     done.wall_seconds += record.times.total;
     on_first_rank(state.communicator, [&] {
       history->write_row(history_row(scene, record, done.wall_seconds));
@@ -123,6 +125,7 @@ namespace axiforge::output
   {
     if (scene.output.format != "vtu" || done.last_fields_step == state.step)
       return;
+    const Phase phase("fields");
     done.last_fields_step    = state.step;
     done.last_fields_stroke  = scene.stroke(state.time);
     done.last_fields_time    = state.time;

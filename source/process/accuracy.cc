@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <axiforge/base/phases.h>
 #include <axiforge/process/accuracy.h>
 #include <axiforge/process/mesh_change.h>
 #include <axiforge/state/checkpoint.h>
@@ -179,6 +180,7 @@ namespace axiforge::process
                     const solvers::FlowResult &result,
                     const double               time_step)
   {
+    const Phase  phase("error estimate");
     const double power = std::abs(result.record.power_tools + result.record.power_boundaries);
     if (power == 0)
       return 0;
@@ -221,6 +223,7 @@ namespace axiforge::process
   {
     if (!scene.accuracy.estimated)
       return;
+    const Phase           phase("error estimate");
     AccuracyRecord       &accuracy = state.accuracy;
     dealii::Vector<float> indicators;
     const double          recovered = recovered_space_error(scene, state, indicators);

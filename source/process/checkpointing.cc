@@ -10,6 +10,7 @@
 #include <axiforge/base/collective.h>
 #include <axiforge/base/csv.h>
 #include <axiforge/base/errors.h>
+#include <axiforge/base/phases.h>
 #include <axiforge/process/checkpointing.h>
 
 namespace axiforge::process
@@ -136,6 +137,7 @@ namespace axiforge::process
 
   void Checkpointing::write(const State &state, const StepRecord &record)
   {
+    const Phase       phase("checkpoint");
     const std::string path = folder + "/checkpoint.axi";
     on_first_rank(state.communicator, [&] {
       // At any moment there is a whole file called checkpoint.axi: the old one gets a second name

@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include <axiforge/base/errors.h>
+#include <axiforge/base/phases.h>
 #include <axiforge/process/fold_watch.h>
 #include <axiforge/process/step.h>
 
@@ -50,7 +51,8 @@ namespace axiforge::process
   {
     if (scene.folding.when_found == "off")
       return;
-    const auto fold =
+    const Phase phase("folds");
+    const auto  fold =
         meshing::find_fold(state, next_step(scene, state, record), scene.folding.smallest_gap);
     if (!fold)
       return;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <axiforge/base/phases.h>
 #include <axiforge/process/accuracy.h>
 #include <axiforge/process/mesh_change.h>
 
@@ -29,6 +30,7 @@ namespace axiforge::process
   {
     if (!scene.refinement.enabled)
       return;
+    const Phase phase("adaptive refinement");
     adapt_to_geometry(scene, state, solver);
     for (unsigned int cycle = 0; cycle < scene.refinement.start_cycles; ++cycle)
       {
@@ -63,6 +65,7 @@ namespace axiforge::process
     meshing::AdaptReport report;
     if (!scene.refinement.enabled)
       return report;
+    const Phase phase("adaptive refinement");
     if (scene.accuracy.driven())
       {
         meshing::Marking marking;

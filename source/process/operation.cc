@@ -2,6 +2,7 @@
 #include <memory>
 
 #include <axiforge/base/errors.h>
+#include <axiforge/base/phases.h>
 #include <axiforge/meshing/remesh.h>
 #include <axiforge/process/accuracy.h>
 #include <axiforge/process/end_condition.h>
@@ -22,6 +23,7 @@ namespace axiforge::process
                 const Progress                       &progress,
                 const std::string                    &reason)
     {
+      const Phase                 phase("remeshing");
       const meshing::RemeshResult result = meshing::remesh(scene, state);
       progress.remeshed(state, reason, result);
       if (result.done)
@@ -122,6 +124,7 @@ namespace axiforge::process
           adapt_at_start(scene, state, solver, choose_step_size(scene, state, record));
         while (ended_by(scene, record).empty())
           {
+            const Phase phase("steps");
             record = step(scene, state, solver, progress, record);
             estimate_errors(scene, state, record);
             record.remeshings            = state.remeshing.count;

@@ -7,6 +7,7 @@
 
 #include <axiforge/base/collective.h>
 #include <axiforge/base/errors.h>
+#include <axiforge/base/phases.h>
 #include <axiforge/meshing/initial_state.h>
 #include <axiforge/output/results.h>
 #include <axiforge/process/chain_summary.h>
@@ -211,9 +212,10 @@ namespace axiforge::process
 
   void run(const RunOptions &options, const MPI_Comm communicator)
   {
-    const bool          first = dealii::Utilities::MPI::this_mpi_process(communicator) == 0;
-    const bool          quiet = options.quiet || !first;
-    const ParameterFile file(options.parameter_file, options.overrides);
+    std::optional<Phase> start_phase(std::in_place, "start");
+    const bool           first = dealii::Utilities::MPI::this_mpi_process(communicator) == 0;
+    const bool           quiet = options.quiet || !first;
+    const ParameterFile  file(options.parameter_file, options.overrides);
 
     const std::vector<scene::SceneParameters> operations = scene::read_operations(file);
     if (options.print_parameters)
@@ -255,6 +257,7 @@ namespace axiforge::process
                                        : fmt::format("{} operations", operations.size()));
         return;
       }
+    start_phase.reset();
     Chain chain{ options, operations,
                  folder,  { file.resolved_text(), all, versions(options, communicator) },
                  quiet,   { folder, all },

@@ -2,6 +2,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <axiforge/base/errors.h>
+#include <axiforge/base/phases.h>
 #include <axiforge/process/accuracy.h>
 #include <axiforge/process/end_condition.h>
 #include <axiforge/process/step.h>
@@ -172,6 +173,7 @@ namespace axiforge::process
         if (result.converged)
           {
             // Try the step on a copy of the position: a cell that turns over takes it back.
+            const Phase phase("geometry after the step");
             const Field before = state.position;
             for (std::size_t i = 0; i < state.position.locally_owned_size(); ++i)
               state.position.local_element(i) += time_step * result.velocity.local_element(i);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <axiforge/base/phases.h>
 #include <axiforge/solvers/contact_set.h>
 
 namespace axiforge::solvers
@@ -53,6 +54,9 @@ namespace axiforge::solvers
 
   unsigned int ContactSet::locate(const Field &velocity, const double time_step)
   {
+    if (scene.tools.empty())
+      return 0;
+    const Phase  phase("contact search");
     const double end            = state.time + time_step;
     const double catch_distance = 1e-10 * scene.size;
     unsigned int n_changes      = 0;

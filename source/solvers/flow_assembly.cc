@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <deal.II/base/mpi.h>
 
+#include <axiforge/base/phases.h>
 #include <axiforge/laws/deviatoric.h>
 #include <axiforge/solvers/flow_solver.h>
 
@@ -88,6 +89,7 @@ namespace axiforge::solvers
 
   bool FlowSolver::evaluate_cells(const bool move_dual)
   {
+    const Phase phase("forces of the cells");
     // The configuration in which the equations hold: x_n + theta dt v.
     position = state.position;
     position.update_ghost_values();
@@ -297,6 +299,7 @@ namespace axiforge::solvers
 
   void FlowSolver::assemble()
   {
+    const Phase phase("assembly");
     index_frames();
 
     system->clear();
@@ -453,6 +456,7 @@ namespace axiforge::solvers
 
   void FlowSolver::recover()
   {
+    const Phase phase("pressure and cell centres");
     for (unsigned int cell = 0; cell < state.tables.cells.size(); ++cell)
       {
         const CellRecovery &kept = recovery[cell];

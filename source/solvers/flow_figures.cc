@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <deal.II/base/mpi.h>
 
+#include <axiforge/base/phases.h>
 #include <axiforge/solvers/flow_solver.h>
 
 namespace axiforge::solvers
@@ -42,6 +43,7 @@ namespace axiforge::solvers
 
   void FlowSolver::finish(FlowResult &result)
   {
+    const Phase phase("figures of the step");
     result.velocity = velocity;
     result.velocity.update_ghost_values();
     result.edge_friction = friction->history(points);

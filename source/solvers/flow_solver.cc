@@ -2,6 +2,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/timer.h>
 
+#include <axiforge/base/phases.h>
 #include <axiforge/solvers/flow_solver.h>
 
 namespace axiforge::solvers
@@ -65,6 +66,7 @@ namespace axiforge::solvers
 
   void FlowSolver::make_system()
   {
+    const Phase phase("set-up of the system");
     const auto &partitioner = *state.velocity.get_partitioner();
     any_hanging             = MPI::sum(state.hanging_nodes.n_constraints(), state.communicator) > 0;
     system_nodes.resize(state.tables.cells.size());
@@ -114,8 +116,9 @@ namespace axiforge::solvers
 
   FlowResult FlowSolver::solve(const double dt)
   {
-    Timer      total;
-    FlowResult result;
+    const Phase phase("flow solver");
+    Timer       total;
+    FlowResult  result;
     time_step                  = dt;
     times                      = StepTimes();
     const double factor_before = system->factor_seconds;

@@ -5,6 +5,7 @@
 #include <Eigen/SparseCore>
 
 #include <axiforge/base/errors.h>
+#include <axiforge/base/phases.h>
 #include <axiforge/solvers/linear_system.h>
 
 namespace axiforge::solvers
@@ -32,6 +33,7 @@ namespace axiforge::solvers
         common.postorder          = 1;
         common.print = 0; // a matrix that is not positive definite is the caller's to report
 
+        const Phase   phase("analysis");
         dealii::Timer timer;
         solver.analyzePattern(matrix);
         analyse_seconds += timer.wall_time();
@@ -63,10 +65,14 @@ namespace axiforge::solvers
       bool solve(Field &solution) override
       {
         dealii::Timer timer;
-        solver.factorize(matrix);
+        {
+          const Phase phase("factorisation");
+          solver.factorize(matrix);
+        }
         factor_seconds += timer.wall_time();
         if (solver.info() != Eigen::Success)
           return false;
+        const Phase phase("triangular solves");
         timer.restart();
         const Eigen::VectorXd x = solver.solve(right_hand_side);
         solve_seconds += timer.wall_time();

@@ -12,6 +12,7 @@
 #include <Teuchos_ParameterList.hpp>
 
 #include <axiforge/base/errors.h>
+#include <axiforge/base/phases.h>
 #include <axiforge/solvers/linear_system.h>
 
 namespace axiforge::solvers
@@ -106,15 +107,20 @@ namespace axiforge::solvers
         dealii::Timer timer;
         if (!analysed)
           {
+            const Phase phase("analysis");
             if (solver->SymbolicFactorization() != 0)
               throw ComputationError("MUMPS could not analyse the pattern of the matrix.");
             analysed = true;
             analyse_seconds += timer.wall_time();
             timer.restart();
           }
-        if (solver->NumericFactorization() != 0)
-          return false;
+        {
+          const Phase phase("factorisation");
+          if (solver->NumericFactorization() != 0)
+            return false;
+        }
         factor_seconds += timer.wall_time();
+        const Phase phase("triangular solves");
         timer.restart();
         if (solver->Solve() != 0)
           return false;

@@ -5,6 +5,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <axiforge/base/phases.h>
 #include <axiforge/state/gauges.h>
 
 namespace axiforge
@@ -154,6 +155,7 @@ namespace axiforge
   {
     if (gauges.empty())
       return {};
+    const Phase         phase("gauges");
     std::vector<double> found;
     for (const Gauge &gauge : gauges)
       {

@@ -21,6 +21,7 @@ namespace axiforge::process
     bool                     validate         = false; ///< read and check everything, run nothing
     bool                     print_parameters = false;
     bool                     quiet            = false; ///< no progress lines
+    bool                     timing           = false; ///< a table of where the time went
     std::string              version, revision, command_line;
 
     OnStep on_step;
