@@ -264,8 +264,12 @@ namespace axiforge::meshing
           predicted <
           std::min(limits.smallest_predicted_jacobian, worse_jacobian * record.jacobian))
         return fmt::format("a Jacobian of {:.3g} in the next step", predicted);
+    // A depth that comes back a few steps after a new mesh is what edges of this size leave.
     const double depth = Outline::penetration(state, scene);
-    if (depth > std::max(limits.largest_penetration, worse_penetration * record.penetration))
+    const double since = state.step - record.last_attempt;
+    const double again = record.last_attempt > 0 ? 1 + patience / since : 1;
+    if (depth >
+        std::max(again * limits.largest_penetration, worse_penetration * record.penetration))
       return fmt::format("an edge passes through a tool by {:.3g} of its length", depth);
     return "";
   }
