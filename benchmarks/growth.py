@@ -17,7 +17,7 @@ import statistics
 import subprocess
 import tempfile
 
-from common import (IMAGES, PROGRAM, ROOT, SCENES, build, must, plots, power_fit, run, save_figure, table, write_csv,
+from support.common import (IMAGES, PROGRAM, ROOT, SCENES, build, must, plots, power_fit, run, save_figure, table, write_csv,
                     write_markdown)
 
 CELLS = [11, 18, 25, 35, 55, 78, 108, 176, 250, 353]
@@ -62,6 +62,8 @@ def measure(program, cells, ranks, counter):
         if found and ranks == 1:
             row["operations"], row["factor_entries"] = float(found.group(1)), float(found.group(2))
             row["rate"] = row["operations"] / row["factorisation_s"]
+            shares = re.search(r"128 columns: (\S+) (\S+) (\S+) (\S+)", result.output).groups()
+            row.update(zip(("below_16", "below_32", "below_64", "below_128"), map(float, shares)))
         rows.append(row)
     return {key: statistics.median(row[key] for row in rows) for key in rows[0]}
 
@@ -139,6 +141,8 @@ def verdicts(rows, rates):
                      "{:.1f} GFlop/s on the same core: {:.0%}, where {:.0%} was the target: {}.".format(
                          int(row["unknowns"]), row["operations"] / 1e9, row["factorisation_s"], row["rate"] / 1e9,
                          best / 1e9, share, LIMIT_RATE, "met" if share >= LIMIT_RATE else "not met"))
+        lines.append("  Of its operations {below_16:.0%} are in supernodes of fewer than 16 columns, {below_32:.0%} of fewer than 32, "
+                     "{below_64:.0%} of fewer than 64, {below_128:.0%} of fewer than 128.".format(**row))
         lines.append("  dgemm by size n of the matrices [GFlop/s]: "
                      + ", ".join("%d: %.1f" % (n, rate / 1e9) for n, rate in sorted(rates.items())) + ".")
     return "\n".join(lines) + "\n"

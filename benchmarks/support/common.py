@@ -9,8 +9,8 @@ import re
 import subprocess
 import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
-PROGRAM = ROOT / "build" / "release" / "axiforge"
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+PROGRAM = pathlib.Path(os.environ.get("AXIFORGE") or ROOT / "build" / "release" / "axiforge")
 RESULTS = ROOT / "benchmarks" / "results"
 IMAGES = ROOT / "doc" / "images"
 SCENES = ROOT / "parameter_files"
