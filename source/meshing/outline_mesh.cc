@@ -294,7 +294,6 @@ namespace axiforge::meshing
                                     ? fault_of_mesh(made.mesh)
                                     : "gmsh did not keep the boundary as it was given";
       const double      value = fault.empty() ? smallest_scaled_jacobian(made.mesh) : -1;
-      fprintf(stderr, "      try %zu cells %g %s\n", made.mesh.cells.size(), value, fault.c_str());
       if (value > best_value)
         {
           best       = made;

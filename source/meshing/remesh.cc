@@ -62,8 +62,13 @@ namespace axiforge::meshing
           const auto  &x    = cell.position;
           const double area = 0.5 * std::abs((x[3][0] - x[0][0]) * (x[2][1] - x[1][1]) -
                                              (x[3][1] - x[0][1]) * (x[2][0] - x[1][0]));
-          const double h    = field.at(Point(x[8][0], x[8][1]));
-          sum += size_for_cells * size_for_cells * area / (h * h);
+          // At the middles of the four quarters: demands are steep near the surface.
+          for (unsigned int v = 0; v < 4; ++v)
+            {
+              const double h =
+                  field.at(Point(0.5 * (x[v][0] + x[8][0]), 0.5 * (x[v][1] + x[8][1])));
+              sum += 0.25 * size_for_cells * size_for_cells * area / (h * h);
+            }
         }
       return sum;
     }
