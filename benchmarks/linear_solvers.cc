@@ -31,6 +31,7 @@ namespace
   using Matrix         = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
   using Vector         = Eigen::VectorXd;
   using Preconditioner = std::function<Vector(const Vector &)>;
+  using Direct         = Eigen::CholmodSupernodalLLT<Matrix, Eigen::Lower>;
 
   constexpr double loose = 1e-3, tight = 1e-6; // of the residual
   int              most_iterations = 2000;
@@ -165,11 +166,17 @@ namespace
       A.setFromTriplets(entries.begin(), entries.end());
       ++iteration;
 
-      auto direct = std::make_unique<Eigen::CholmodSupernodalLLT<Matrix, Eigen::Lower>>();
-      cholmod_common &common    = direct->cholmod();
-      common.nmethods           = 1;
-      common.method[0].ordering = CHOLMOD_METIS;
-      direct->analyzePattern(A);
+      // One factor for the first iteration, which is kept, and one for all others.
+      std::unique_ptr<Direct> &direct = iteration == 1 ? old : present;
+      if (!direct)
+        {
+          direct                 = std::make_unique<Direct>();
+          cholmod_common &common = direct->cholmod();
+
+          common.nmethods           = 1;
+          common.method[0].ordering = CHOLMOD_METIS;
+          direct->analyzePattern(A);
+        }
       double begin = cpu_seconds();
       direct->factorize(A);
       if (direct->info() != Eigen::Success)
@@ -181,11 +188,9 @@ namespace
                 << cpu_seconds() - begin << ",,,"
                 << (A.selfadjointView<Eigen::Lower>() * x - right_hand_side).norm() /
                        right_hand_side.norm()
-                << ',' << common.lnz << ',' << common.fl << std::endl;
+                << ',' << direct->cholmod().lnz << ',' << direct->cholmod().fl << std::endl;
       if (iteration == 4)
         compare(A);
-      if (!old)
-        old = std::move(direct);
 
       solution = 0;
       for (unsigned int node = 0; node < row_of_node.size(); ++node)
@@ -237,12 +242,12 @@ namespace
                 << ",," << std::endl;
     }
 
-    std::vector<int>                                                   row_of_node;
-    solvers::SystemNodes                                               nodes;
-    std::vector<Eigen::Triplet<double>>                                entries;
-    Vector                                                             right_hand_side;
-    int                                                                iteration = 0;
-    std::unique_ptr<Eigen::CholmodSupernodalLLT<Matrix, Eigen::Lower>> old;
+    std::vector<int>                    row_of_node;
+    solvers::SystemNodes                nodes;
+    std::vector<Eigen::Triplet<double>> entries;
+    Vector                              right_hand_side;
+    int                                 iteration = 0;
+    std::unique_ptr<Direct>             old, present;
   };
 } // namespace
 
