@@ -121,7 +121,7 @@ def configurations(case, quick):
     for cells in (6,) if quick else (4, 6, 9, 13, 18, 28):
         yield "paper's settings", "%d x %d" % (cells, cells), [mesh(cells)] + paper(case)
     for level in (2,) if quick else (1, 2, 3, 4, 5):
-        yield "adaptive", "8 x 8, %d levels" % level, [mesh(8)] + adaptive(level, level)
+        yield "adaptive", "8 x 8, level %d" % level, [mesh(8)] + adaptive(level, level)
     for target in (2,) if quick else (4, 2, 1, 0.5, 0.25):
         yield "target accuracy", "%g %%" % target, [mesh(6), "Accuracy/Target accuracy = %g %%" % target]
 

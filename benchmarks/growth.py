@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Time and memory of one velocity solve from 1,000 to 1,000,000 unknowns, on one rank and on two.
 
-    benchmarks/growth.py [PROGRAM] [--ranks 1 2] [--largest CELLS] [--largest-on-two-ranks CELLS]
+    benchmarks/growth.py [PROGRAM] [--ranks 1 2] [--cells 11 18 ...] [--keep]
 
 The first 0.01 mm of parameter_files/cylinder_upsetting.prm on n x n cells. The phases are those of --timing, in
-CPU seconds of one rank, per Newton iteration where a phase belongs to one. Small meshes are repeated, the median
-counts. The operations of the factorisation are counted by a library that is preloaded (cholmod_flops.c); what the
+CPU seconds of one rank, per Newton iteration where a phase belongs to one. Small meshes are repeated on one rank, the
+median counts. The operations of the factorisation are counted by a library that is preloaded (cholmod_flops.c); what the
 BLAS reaches in dgemm comes from the target kernels.
 """
 import argparse
@@ -40,8 +40,14 @@ def measure(program, cells, ranks, counter):
         "Workpiece/Geometry parameters = RadialCells = %d, AxialCells = %d" % (cells, cells),
     ]
     rows = []
-    for _ in range(5 if cells < 50 else 3 if cells < 150 else 1):
-        result = must(run(program, SCENES / "cylinder_upsetting.prm", entries, ranks, {"LD_PRELOAD": str(counter)}))
+    for _ in range(1 if ranks > 1 or cells > 150 else 3 if cells > 50 else 5):
+        result = run(program, SCENES / "cylinder_upsetting.prm", entries, ranks, {"LD_PRELOAD": str(counter)})
+        if result.status != 0 and ranks > 1:
+            reason = re.search(r"^axiforge: .*?: (.*?)\.", result.output, re.MULTILINE)
+            print(result.output[:2000])
+            return {"ranks": ranks, "cells": cells * cells, "unknowns": 2 * (2 * cells + 1) ** 2, "memory_MB": result.memory,
+                    "failed": reason.group(1) if reason else "status %d" % result.status}
+        must(result)
         iterations = result.phases["factorisation"][0]
         clock = 2 if ranks == 1 else 1  # ranks that wait for each other burn CPU time
         row = {
@@ -73,7 +79,8 @@ def measure(program, cells, ranks, counter):
 def kept_rows():
     """What results/growth.csv has."""
     with open(RESULTS / "growth.csv", newline="") as file:
-        return [{key: float(value) for key, value in row.items() if value} for row in csv.DictReader(file)]
+        rows = [{key: value for key, value in row.items() if value} for row in csv.DictReader(file)]
+    return [{key: value if key == "failed" else float(value) for key, value in row.items()} for row in rows]
 
 
 def dgemm_rate():
@@ -166,22 +173,25 @@ def verdicts(rows, rates):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("program", nargs="?", type=pathlib.Path, default=PROGRAM)
-    parser.add_argument("--ranks", nargs="+", type=int, default=[1, 2], help="the rows of others are kept")
-    parser.add_argument("--largest", type=int, default=CELLS[-1], help="cells along a side")
-    parser.add_argument("--largest-on-two-ranks", type=int, default=CELLS[-1])
+    parser.add_argument("--ranks", nargs="+", type=int, default=[1, 2])
+    parser.add_argument("--cells", nargs="+", type=int, default=CELLS, help="along a side")
+    parser.add_argument("--keep", action="store_true", help="keep the last results of all that is not measured now")
     arguments = parser.parse_args()
-    rows = [] if len(arguments.ranks) == 2 else [row for row in kept_rows() if row["ranks"] not in arguments.ranks]
+    rows = []
+    if arguments.keep:
+        rows = [row for row in kept_rows() if row["ranks"] not in arguments.ranks or row["cells"] ** 0.5 not in arguments.cells]
     with tempfile.TemporaryDirectory() as folder:
         counter = pathlib.Path(folder) / "cholmod_flops.so"
         subprocess.run(["cc", "-O2", "-fPIC", "-shared", "-I/usr/include/suitesparse",
                         ROOT / "benchmarks" / "cholmod_flops.c", "-o", counter, "-ldl"], check=True)
         rates = dgemm_rate()
-        for ranks, largest in ((1, arguments.largest), (2, arguments.largest_on_two_ranks)):
-            for cells in CELLS:
-                if ranks in arguments.ranks and cells <= largest:
-                    rows.append(measure(arguments.program.resolve(), cells, ranks, counter))
-                    print(rows[-1], flush=True)
-                    write_csv("growth", rows)
+        for ranks in arguments.ranks:
+            for cells in arguments.cells:
+                row = measure(arguments.program.resolve(), cells, ranks, counter)
+                print(row, flush=True)
+                rows.append(row)
+                rows.sort(key=lambda row: (row["ranks"], row["unknowns"]))
+                write_csv("growth", rows)
     columns = {
         "unknowns": ("unknowns", "{:,.0f}"), "iterations": ("iterations", "{:.0f}"), "step [s]": ("step_s", "{:.3g}"),
         "iteration [s]": ("iteration_s", "{:.3g}"), "forces": ("forces_s", "{:.2g}"), "assembly": ("assembly_s", "{:.2g}"),
@@ -190,7 +200,6 @@ def main():
     }
     one = dict(columns, **{"assembly's share": ("assembly_share", "{:.0%}"), "GFlop": ("gigaflop", "{:.3g}"),
                            "GFlop/s": ("gigarate", "{:.3g}")})
-    rows.sort(key=lambda row: (row["ranks"], row["unknowns"]))
     for row in rows:
         row["gigaflop"], row["gigarate"] = row.get("operations", 0) / 1e9, row.get("rate", 0) / 1e9
     body = ("The first 0.01 mm of `cylinder_upsetting.prm` on n x n cells; forces, assembly, factorisation and solve are seconds "
@@ -198,7 +207,7 @@ def main():
             "process.\n\nOne rank, CHOLMOD, CPU seconds:\n\n"
             + table([row for row in rows if row["ranks"] == 1], one)
             + "\nTwo ranks, MUMPS, wall seconds of the first rank, memory of the larger one:\n\n"
-            + table([row for row in rows if row["ranks"] == 2], columns) + "\n" + verdicts(rows, rates))
+            + table([row for row in rows if row["ranks"] == 2], dict(columns, **{"failed": ("failed", "{}")})) + "\n" + verdicts(rows, rates))
     write_markdown("growth", "Growth with the mesh", arguments.program.resolve(), body)
     picture(rows)
 

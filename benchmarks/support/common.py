@@ -51,7 +51,7 @@ def run(program, scene, entries=(), ranks=1, environment=None, keep=None):
         command += ["--set", entry]
     if ranks > 1:
         variables.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-        command = ["mpirun", "--oversubscribe", "-np", str(ranks)] + command
+        command = ["mpirun", "--oversubscribe", "--mca", "mpi_yield_when_idle", "1", "-np", str(ranks)] + command
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(keep or temporary)
         with open(pathlib.Path(temporary) / "log", "w+") as log:
