@@ -25,7 +25,8 @@ def main():
         capture_output=True, text=True, check=True,
     ).stdout
     times = {}
-    for benchmark in json.loads(output)["benchmarks"]:
+    order = lambda benchmark: (benchmark["family_index"], benchmark["per_family_instance_index"])
+    for benchmark in sorted(json.loads(output)["benchmarks"], key=order):
         if benchmark["run_type"] == "iteration":
             rows = times.setdefault(benchmark["run_name"], [])
             rows.append((benchmark["cpu_time"], benchmark.get("operations")))

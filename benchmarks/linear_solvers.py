@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The direct solver against conjugate gradients with four preconditioners, on the same matrices.
 
-    benchmarks/linear_solvers.py [PROGRAM] [--cells 36 75 150 300]
+    benchmarks/linear_solvers.py [PROGRAM] [--cells 36 75 150 300] [--penalties 1e2 1e3 1e4 1e8] [--keep]
 
 Builds and runs the target linear_solvers (linear_solvers.cc): the first velocity solve of parameter_files/cylinder_upsetting.prm,
 matrix of the fourth Newton iteration, for several penalties. PROGRAM only tells its revision.
@@ -14,7 +14,7 @@ import pathlib
 import re
 import subprocess
 
-from support.common import PROGRAM, SCENES, build, table, write_csv, write_markdown
+from support.common import PROGRAM, RESULTS, SCENES, build, table, write_csv, write_markdown
 
 PENALTIES = [("penalty", 1e2), ("penalty", 1e3), ("iterated penalty", 1e4), ("iterated penalty", 1e8)]
 MOST = {75: 1000, 150: 300}  # iterations by cells along a side: more would take hours, and tell no more
@@ -25,13 +25,22 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("program", nargs="?", type=pathlib.Path, default=PROGRAM)
     parser.add_argument("--cells", nargs="+", type=int, default=[36, 75, 150, 300])
+    parser.add_argument("--penalties", nargs="+", type=float, default=[penalty for _, penalty in PENALTIES])
+    parser.add_argument("--keep", action="store_true", help="add to the last results")
     arguments = parser.parse_args()
     solvers = build("linear_solvers")
     if not solvers:
         raise SystemExit("The target linear_solvers could not be built.")
     rows = []
+    if arguments.keep:
+        with open(RESULTS / "linear_solvers.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        for row in rows:
+            row.update({key: float(row[key]) for key in ("penalty", "set_up_s", "solve_s", "residual")}, unknowns=int(row["unknowns"]))
     for cells in arguments.cells:
         for kind, penalty in PENALTIES:
+            if penalty not in arguments.penalties:
+                continue
             most = next((most for size, most in sorted(MOST.items()) if cells <= size), FEWEST)
             done = subprocess.run(
                 [solvers, SCENES / "cylinder_upsetting.prm", str(most), "Flow solver/Incompressibility = " + kind,
