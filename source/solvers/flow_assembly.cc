@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <deal.II/base/mpi.h>
 
+#include <axiforge/base/features.h>
 #include <axiforge/base/phases.h>
 #include <axiforge/laws/deviatoric.h>
 #include <axiforge/solvers/flow_solver.h>
@@ -186,7 +187,7 @@ namespace axiforge::solvers
 
   void FlowSolver::add_external_forces()
   {
-    if (!cell_external.empty())
+    if (optional_features && !cell_external.empty())
       {
         for (CellDofs &force : cell_external)
           force.fill(0);
@@ -268,7 +269,7 @@ namespace axiforge::solvers
 
   void FlowSolver::add_friction_forces()
   {
-    if (friction->edges().empty())
+    if (!optional_features || friction->edges().empty())
       return;
     friction_force = 0;
     for (unsigned int e = 0; e < friction->edges().size(); ++e)

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <axiforge/base/features.h>
 #include <axiforge/base/phases.h>
 #include <axiforge/solvers/interface_friction.h>
 
@@ -86,7 +87,7 @@ namespace axiforge::solvers
                                    const double                  time_step,
                                    const bool                    newton)
   {
-    if (edges_.empty())
+    if (!optional_features || edges_.empty())
       return;
     const Phase phase("friction");
     for (unsigned int e = 0; e < edges_.size(); ++e)
