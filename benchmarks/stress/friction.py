@@ -6,8 +6,8 @@ from scenes import MATERIALS, PLASTIC, cylinder
 from tables import Table
 
 TITLE = "Friction from frictionless to sticking"
-SMM = [0, 1e-8, 1e-4, 1e-2, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 0.999, 1 - 1e-4, 1 - 1e-6, 1 - 1e-8]
-SHEAR = [0, 1e-8, 1e-4, 1e-2, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 1 - 1e-8, 1]
+SMM = [0, 1e-8, 1e-4, 1e-2, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 1 - 1e-4, 1 - 1e-6, 1 - 1e-8]
+SHEAR = [0, 1e-8, 1e-4, 1e-2, 0.1, 0.3, 0.5, 0.7, 0.9, 1 - 1e-8, 1]
 
 
 def smm(viscosity, element):
@@ -23,9 +23,9 @@ LAWS = {
     "shear": (lambda m: {"Law": "shear", "Factor": m}, SHEAR, False),
     "arctan": (lambda m: {"Law": "arctan", "Factor": m}, SHEAR, False),
     "tangential forces": (lambda m: {"Law": "tangential forces", "Factor": m}, SHEAR, False),
-    "coulomb": (lambda mu: {"Law": "coulomb", "Coefficient": mu}, [0, 1e-8, 1e-4, 1e-2, 0.05, 0.1, 0.3, 0.577, 1, 10], False),
-    "norton, q = 1": (lambda k: {"Law": "norton", "Viscosity": k, "Exponent": 1}, [0, 1e-6, 1e-2, 1, 1e2, 1e3, 1e4, 1e6, 1e8, 1e12], True),
-    "norton, q = 0.1": (lambda k: {"Law": "norton", "Viscosity": k, "Exponent": 0.1}, [0, 1e-6, 1e-2, 1, 10, 1e2, 1e4, 1e6, 1e8, 1e12], True),
+    "coulomb": (lambda mu: {"Law": "coulomb", "Coefficient": mu}, [0, 1e-8, 1e-2, 0.05, 0.1, 0.3, 0.577, 1, 10], False),
+    "norton, q = 1": (lambda k: {"Law": "norton", "Viscosity": k, "Exponent": 1}, [0, 1e-6, 1e-2, 1, 1e2, 1e4, 1e8, 1e12], True),
+    "norton, q = 0.1": (lambda k: {"Law": "norton", "Viscosity": k, "Exponent": 0.1}, [0, 1e-6, 1, 10, 1e2, 1e4, 1e8, 1e12], True),
 }
 SHORT_LAWS = ("smm, viscosity of the layer", "shear", "coulomb")
 SHORT_VALUES = (0, 0.5, 0.7, 1 - 1e-8, 1, 10)
@@ -64,6 +64,8 @@ def run(session):
         session.check(frictionless.done and sticking.done, f"{material_name}: no friction, sticking")
         low, high = frictionless.forces()[-1], sticking.forces()[-1]
         for law in SHORT_LAWS if session.short else LAWS:
+            if "eight nodes" in law and material_name != "hardening":
+                continue  # the element is not the material's affair
             make, values, sticks = LAWS[law]
             if session.short:
                 values = [value for value in values if value in SHORT_VALUES]
@@ -121,7 +123,7 @@ def bounds(session):
     )
     radius, height = 25.0, 50.0
     for law in ("shear", "arctan"):
-        for m in SHEAR:
+        for m in (0, 0.1, 0.3, 0.5, 0.7, 1) if law == "shear" else (0.1, 0.5, 1):
             entries = {
                 **cylinder(PLASTIC, {"Law": law, "Factor": m, "Regularisation velocity": 1e-5}, cells=16, grading=4, stroke=0.0025, step=0.0025),
                 "Flow solver/Regularisation": 1e-4,

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Iterated, static and classical penalty from 1e2 to 1e12: what each costs in digits."""
 import math
+import statistics
 
 from scenes import HARDENING, cylinder, smm
 from tables import Table
@@ -58,7 +59,7 @@ def run(session):
         ["method", "lambda", "residual can be solved to", "digits lost", "iterations", "error of the force",
          "power of the divergence", "volume change", "condition", "why not"],
         "`cylinder_upsetting.prm`, one step of 1 %. The residual can be solved to the tightest power of ten at which the "
-        "iteration ends; digits lost are counted from the iterated penalty at its best. Force, volume and divergence are of "
+        "iteration ends; digits lost are counted from what the iterated penalty reaches as a rule. Force, volume and divergence are of "
         "that solution; the force is compared with the iterated penalty at 1e-12. Power of the divergence: of the mean "
         "stress on div v, over the plastic power.",
     )
@@ -66,7 +67,7 @@ def run(session):
     for method in METHODS:
         for exponent in exponents:
             results[method, exponent] = attainable(program, method, 10.0**exponent, cells)
-    best = max(digits for (method, _), (digits, _) in results.items() if method == "iterated")
+    best = statistics.mode(digits for (method, _), (digits, run) in results.items() if method == "iterated" and run.done)
     for (method, exponent), (digits, outcome) in results.items():
         if outcome.status == 1 or not outcome.done:
             first.add(method, f"1e{exponent}", "-", None, None, None, None, None, None, outcome.reason)
@@ -75,7 +76,7 @@ def run(session):
         error = row["force_upper_N"] / exact - 1
         volume = row["power_volume_mW"] / row["power_plastic_mW"]
         condition = condition_of(program, method, exponent, digits, cells)
-        first.add(method, f"1e{exponent}", f"1e-{digits}", best - digits, outcome.iterations, error, volume,
+        first.add(method, f"1e{exponent}", f"1e-{digits}", max(0, best - digits), outcome.iterations, error, volume,
                   row["relative_volume_change"], condition, "")
 
     def at(method, exponent):
