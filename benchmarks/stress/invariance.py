@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What must not change an answer: the scene upside down or at another height, cells and nodes in another order."""
-import math
-
 from meshes import Mesh, polyline
 from scaling import difference
 from scenes import HARDENING, PLASTIC
@@ -65,8 +63,8 @@ def run(session):
                     other = program.run(scene(program, material, friction, tolerance, **values))
                     if not other.done:
                         table.add(name, friction, f"{tolerance:.0e}", change, other.reason, None, None, "")
-                        far = values.get("shift", 0) >= 1e9
-                        session.check(far, f"{name}, {friction}, {tolerance}, {change}: {other.message}")
+                        # So far away the rounding of the positions is more than the tolerance asks for.
+                        session.check(tolerance < 1e-5 and values.get("shift", 0) >= 1e9, f"{name}, {friction}, {tolerance}, {change}: {other.message}")
                         continue
                     if values.get("mirrored"):
                         for row in other.rows:
@@ -76,7 +74,8 @@ def run(session):
                     table.add(name, friction, f"{tolerance:.0e}", change, "done", other.iterations, deviation, column)
                     # The positions of a scene that is far from z = 0 are rounded.
                     rounding = abs(values.get("shift", 0)) * 2.2e-16 / 20
-                    allowed = max(tolerance, 1e3 * rounding)
-                    session.check(not math.isfinite(allowed) or deviation < allowed,
+                    # The tolerance is one of the residual in the mean: single values may be off by some times as much.
+                    allowed = max(10 * tolerance, 2e4 * rounding)
+                    session.check(deviation < allowed,
                                   f"{name}, {friction}, {tolerance}, {change}: {column} differs by {deviation:.1e}")
     return [table], {"changes": table}
