@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The estimated condition number of a matrix whose spectrum is known: second differences with
 // diagonal 2, 1/cond = tan^2(pi / (2 (n + 1))); a diagonal scaling of it must not matter.
-#include <gtest/gtest.h>
-
 #include <Eigen/Cholesky>
+#include <gtest/gtest.h>
 
 #include <axiforge/solvers/condition.h>
 

@@ -27,8 +27,11 @@ LAWS = {
     "norton, q = 1": (lambda k: {"Law": "norton", "Viscosity": k, "Exponent": 1}, [0, 1e-6, 1e-2, 1, 1e2, 1e4, 1e8, 1e12], True),
     "norton, q = 0.1": (lambda k: {"Law": "norton", "Viscosity": k, "Exponent": 0.1}, [0, 1e-6, 1, 10, 1e2, 1e4, 1e8, 1e12], True),
 }
-SHORT_LAWS = ("smm, viscosity of the layer", "shear", "coulomb")
-SHORT_VALUES = (0, 0.5, 0.7, 1 - 1e-8, 1, 10)
+# Up to where a law is held to its word (doc/stability.md).
+LIMITED = {"tangential forces": 0.7}
+SHORT_LAWS = ("smm, viscosity of the layer", "shear", "norton, q = 0.1")
+# 1e4: the first step failed when the tangent of norton had no bound.
+SHORT_VALUES = (0, 0.5, 1 - 1e-8, 1, 1e4, 1e12)
 
 
 def scene(material, friction, cells, stroke):
@@ -88,7 +91,7 @@ def add_summary(session, summary, law, material, runs, low, high, sticks):
     done = [(value, outcome, force) for value, outcome, force in runs if outcome.done]
     means = [outcome.iterations / len(outcome.rows) for _, outcome, _ in done]
     drop = max((a[2] / b[2] - 1 for a, b in zip(done, done[1:])), default=0.0)
-    first_failure = next((f"{value:g}: {outcome.reason}" for value, outcome, _ in runs if not outcome.done), "")
+    first_failure = next((f"{value!r}: {outcome.reason}" for value, outcome, _ in runs if not outcome.done), "")
     conditions = [outcome.condition for _, outcome, _ in done]
     at_least = done[0][2] / low - 1 if done and done[0][0] == 0 else math.nan
     at_most = done[-1][2] / high - 1 if done and done[-1][0] == runs[-1][0] else math.nan
@@ -98,15 +101,20 @@ def add_summary(session, summary, law, material, runs, low, high, sticks):
         f"{min(conditions):.1e} to {max(conditions):.1e}" if conditions else "-", first_failure,
     )
     what = f"{law}, {material}"
+    # The viscosity of the workpiece is a direct iteration that may fail, and says so. Tangential forces are given
+    # and don't answer to the slip: near the yield stress in shear they tear the surface along.
+    within = LIMITED.get(law, math.inf)
     if "workpiece" not in law:
-        # The viscosity of the workpiece is a direct iteration that may fail, and says so.
-        session.check(len(done) == len(runs), f"{what}: {first_failure}")
+        failed = [value for value, outcome, _ in runs if not outcome.done and value <= within]
+        session.check(not failed, f"{what}: {first_failure}")
+    done = [(value, outcome, force) for value, outcome, force in done if value <= within]
+    drop = max((a[2] / b[2] - 1 for a, b in zip(done, done[1:])), default=0.0)
     if at_least == at_least:
         session.check(abs(at_least) < 1e-5, f"{what}: nothing is not frictionless, {at_least:.1e}")
     if sticks and at_most == at_most:
         session.check(abs(at_most) < 1e-3, f"{what}: the largest value does not stick, {at_most:.1e}")
     for value, outcome, force in done:
-        # Catching of nodes and quadrature along the edge let a law lie a little above sticking.
+        # Where the surface slides the contact is a little wider than where it sticks: the force may lie above sticking.
         session.check(low * (1 - 1e-5) <= force <= high * 1.01, f"{what}, {value:g}: force {force:.6g} not from {low:.6g} to {high:.6g}")
         session.check(outcome.power_residual < 1e-3, f"{what}, {value:g}: power off by {outcome.power_residual:.1e}")
         session.check(abs(outcome.volume_change) < 1e-4, f"{what}, {value:g}: volume off by {outcome.volume_change:.1e}")
