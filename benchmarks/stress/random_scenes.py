@@ -9,7 +9,7 @@ from tables import Table
 
 TITLE = "Random scenes"
 SEED = 2026
-N_SCENES, N_SHORT = 300, 8
+N_SCENES, N_SHORT = 200, 8
 
 
 def draw(generator, folder):

@@ -24,7 +24,7 @@ def slender(session):
     )
     for name in ("hardening",) if session.short else MATERIALS:
         for friction in ("smm 0.3",) if session.short else FRICTION:
-            for both in (True,) if session.short else (True, False):
+            for both in (True, False) if name == "hardening" and not session.short else (True,):
                 height, steps = 60.0, (10 if session.short else 50)
                 reduction = 0.1 if session.short else 0.5
                 speeds = (0.3, -0.3) if both else (0, -0.6)
