@@ -109,6 +109,8 @@ def add_summary(session, summary, law, material, runs, low, high, sticks):
         session.check(not failed, f"{what}: {first_failure}")
     done = [(value, outcome, force) for value, outcome, force in done if value <= within]
     drop = max((a[2] / b[2] - 1 for a, b in zip(done, done[1:])), default=0.0)
+    if "norton" in law:
+        session.check(sum(outcome.repeats for _, outcome, _ in done) == 0, f"{what}: steps were repeated")
     if at_least == at_least:
         session.check(abs(at_least) < 1e-5, f"{what}: nothing is not frictionless, {at_least:.1e}")
     if sticks and at_most == at_most:
