@@ -116,6 +116,7 @@ class Run:
             r"flow has become so uneven",
             r"nothing holds the workpiece along z",
             r"too small for the iterated penalty",
+            r"Entry \"[^\"]*\"( = \"[^\"]*\")?: [^.:]*",
             r"meets another part|surface folds|fold",
         ):
             found = re.search(pattern, text)
@@ -154,7 +155,7 @@ class Program:
             )
             status, cpu = self.wait(process)
             screen.seek(0)
-            message = screen.read()
+            message = screen.read().replace(f"{self.work}/", "")
         self.cpu += cpu
         rows, header = [], []
         history = folder / "history.csv"

@@ -22,7 +22,7 @@ def slender(session):
         "difference of the outer radius at mirrored heights (of the quarter points, and of 1/20 and 19/20), over the radius; both "
         "platens move, or the lower one rests.",
     )
-    for name in ("hardening",) if session.short else MATERIALS:
+    for name in ("hardening",) if session.short else ("hardening", "rate sensitive"):
         for friction in ("smm 0.3",) if session.short else FRICTION:
             for both in (True, False) if name == "hardening" and not session.short else (True,):
                 height, steps = 60.0, (10 if session.short else 50)
@@ -48,8 +48,7 @@ def slender(session):
                     entries[f"Gauge {gauge}/At"] = lowest + share * last
                 outcome = program.run(entries, f"slender, {name}, {friction}")
                 what = f"slender, {name}, {friction}, {'both' if both else 'one'}"
-                if name != "plastic":
-                    session.check(outcome.done, f"{what}: {outcome.message}")
+                session.check(outcome.done, f"{what}: {outcome.message}")
                 asymmetry = imbalance = None
                 if outcome.done:
                     a, b, c, d = (outcome.last[f"gauge_{gauge}_mm"] for gauge in "abcd")
@@ -62,6 +61,41 @@ def slender(session):
                     session.check(imbalance < 1e-4, f"{what}: forces differ by {imbalance:.1e}")
                 table.add(name, friction, "both" if both else "upper", "done" if outcome.done else f"at {outcome.last['stroke_mm'] / (2 if not both else 1) / 30:.0%}",
                           len(outcome.rows), outcome.iterations / len(outcome.rows), asymmetry, imbalance, outcome.last["smallest_jacobian"], outcome.reason)
+    return table
+
+
+def slender_plastic(session):
+    """What makes the slender cylinder hard, and what helps."""
+    table = Table(
+        "Slender and perfectly plastic",
+        ["material", "scheme", "reaches", "steps", "repeats", "iterations per step", "CPU [s]"],
+        "The same cylinder, frictionless, to 10 % of its height in ten steps, 25 steps at most.",
+    )
+    height, end = 60.0, 3.0
+    linear = {"Material/Model": "ludwik", "Material/Yield stress": 100, "Material/Strength coefficient": 10, "Material/Hardening exponent": 1}
+    cases = {"m = 0": PLASTIC, "m = 0.001": power_law(0.001), "m = 0.003": power_law(0.003), "m = 0.01": power_law(0.01), "m = 0.03": power_law(0.03),
+             "sigma = 100 + 10 strain MPa": linear, "swift, m = 0.02": HARDENING}
+    for name, material in cases.items():
+        for scheme in ("midpoint", "explicit euler") if name == "m = 0" else ("midpoint",):
+            entries = {
+                "Tools": "upper, lower",
+                "Workpiece/Geometry file": "cylinder_full.geo",
+                "Workpiece/Geometry parameters": geometry_parameters(Radius=10.0, Height=height, RadialCells=6, AxialCells=36),
+                **material,
+                **platen("upper", height, -0.3),
+                **platen("lower", 0.0, 0.3),
+                "Process/Driving tool": "upper",
+                "Process/End stroke": end,
+                "Time stepping/Stroke per step": 0.1 * end,
+                "Time stepping/Most steps": 25,
+                "Time stepping/Scheme": scheme,
+            }
+            outcome = session.program.run(entries, f"slender, {name}, {scheme}")
+            done = outcome.rows and outcome.last["stroke_mm"] > 0.999 * end
+            table.add(name, scheme, f"{outcome.last['stroke_mm'] / height * 2:.1%}" if outcome.rows else outcome.reason, len(outcome.rows), outcome.repeats,
+                      outcome.iterations / max(1, len(outcome.rows)), outcome.cpu)
+            if name in ("m = 0.01", "m = 0.03", "swift, m = 0.02"):
+                session.check(done and outcome.repeats == 0, f"slender, {name}: {outcome.reason}, {outcome.repeats} repeats")
     return table
 
 
@@ -92,8 +126,12 @@ def flat(session):
         name = law if law == "sticking" else f"{law} {factor:g}"
         table.add(name, f"{pressure:.4f}", f"{bound:.4f}", "done" if outcome.done else f"at {outcome.last['stroke_mm'] / half:.0%}" if first else "no step",
                   outcome.iterations / max(1, len(outcome.rows)), outcome.repeats, max(outcome.column("condition")) if first else None, outcome.reason)
-        session.check(first is not None and 1 < pressure < bound * 1.002, f"flat, {name}: {pressure:.4f}, bound {bound:.4f}; {outcome.reason}")
-        session.check(outcome.done, f"flat, {name}: {outcome.message}")
+        # Where it sticks, four cells have no layer to shear in at the platen: their answer lies above the parallel field's.
+        allowed = 1.01 if law == "sticking" or m == 1 and law == "smm" else 1.002
+        session.check(first is not None and 1 < pressure < bound * allowed, f"flat, {name}: {pressure:.4f}, bound {bound:.4f}; {outcome.reason}")
+        # Perfectly plastic material at high friction wears the mesh out: that it has to say.
+        session.check(outcome.done or m > 0.6 and outcome.reason == "a cell turns over" and outcome.last["stroke_mm"] > 0.1 * half,
+                      f"flat, {name}: {outcome.message}")
     return table
 
 
@@ -177,5 +215,8 @@ def aspect(session):
 
 
 def run(session):
-    tables = [slender(session), flat(session), distorted(session), aspect(session)]
-    return tables, dict(zip(("slender", "flat", "distorted", "aspect"), tables))
+    sweeps = {"slender": slender, "slender_plastic": slender_plastic, "flat": flat, "distorted": distorted, "aspect": aspect}
+    if session.short:
+        del sweeps["slender_plastic"]
+    results = {name: sweep(session) for name, sweep in sweeps.items()}
+    return list(results.values()), results

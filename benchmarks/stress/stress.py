@@ -14,6 +14,7 @@ import importlib
 import pathlib
 import sys
 
+sys.dont_write_bytecode = True  # the tree of the sources stays clean
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import program as programs  # noqa: E402
 import tables  # noqa: E402
