@@ -9,7 +9,8 @@ from tables import Table
 
 TITLE = "Random scenes"
 SEED = 2026
-N_SCENES, N_SHORT = 200, 8
+N_SCENES = 200
+SHORT = (*range(7), 183)  # 183 was said to be held by nothing where a cell had turned over
 
 
 def draw(generator, folder):
@@ -214,11 +215,14 @@ def run(session):
                                   "power residual", "volume change", "CPU [s]", "reason"])
     counts = collections.defaultdict(lambda: collections.defaultdict(int))
     reasons = collections.Counter()
-    for i in range(N_SHORT if session.short else N_SCENES):
+    for i in SHORT if session.short else range(N_SCENES):
         # A generator for each scene: any of them can be made again by itself.
         entries, words = draw(random.Random(f"{SEED} {i}"), program.work)
         outcome = program.run(entries, f"scene {i}")
         fault = sound(outcome, entries, words) if outcome.done and outcome.rows else None
+        # All of them have a symmetry line or a platen below.
+        if "nothing holds the workpiece" in outcome.message:
+            fault = "a reason that is not true: nothing holds it"
         session.check(fault is None, f"scene {i} {words}: {fault}")
         some = bool(outcome.rows)
         every.add(i, words["workpiece"], words["tool"], words["friction"], words["material"], words["mesh"], words["step"], outcome.status,
