@@ -117,7 +117,7 @@ class Run:
             r"nothing holds the workpiece along z",
             r"too small for the iterated penalty",
             r"Entry \"[^\"]*\"( = \"[^\"]*\")?: [^.:]*",
-            r"meets another part|surface folds|fold",
+            r"surface folds",
         ):
             found = re.search(pattern, text)
             if found:

@@ -212,9 +212,7 @@ def sound(outcome, entries, words):
 def run(session):
     program = session.program
     every = Table("Every scene", ["scene", "workpiece", "tool", "friction", "material", "mesh", "step", "status", "steps", "iterations", "repeats",
-                                  "power residual", "volume change", "CPU [s]", "reason"])
-    counts = collections.defaultdict(lambda: collections.defaultdict(int))
-    reasons = collections.Counter()
+                                  "power residual", "volume change", "CPU [s]", "ends", "message"])
     for i in SHORT if session.short else range(N_SCENES):
         # A generator for each scene: any of them can be made again by itself.
         entries, words = draw(random.Random(f"{SEED} {i}"), program.work)
@@ -227,18 +225,27 @@ def run(session):
         some = bool(outcome.rows)
         every.add(i, words["workpiece"], words["tool"], words["friction"], words["material"], words["mesh"], words["step"], outcome.status,
                   len(outcome.rows), outcome.iterations, outcome.repeats, outcome.power_residual if some else None,
-                  outcome.volume_change if some else None, outcome.cpu, fault or (" ".join(outcome.message.split()) if not outcome.done else ""))
-        if not outcome.done:
-            reasons[outcome.status, outcome.reason] += 1
+                  outcome.volume_change if some else None, outcome.cpu, "wrong" if fault else outcome.reason or "done",
+                  fault or (" ".join(outcome.message.split()) if not outcome.done else ""))
+    return summaries(every), {"scenes": every}
+
+
+def summaries(every):
+    counts = collections.defaultdict(lambda: collections.defaultdict(int))
+    reasons = collections.Counter()
+    for row in every.rows:
+        row = dict(zip(every.columns, row))
+        if row["status"] != 0:
+            reasons[row["status"], row["ends"]] += 1
         for kind in ("workpiece", "tool", "friction", "material", "mesh"):
-            counts[kind, words[kind]][outcome.status] += 1
-            counts[kind, words[kind]]["fault"] += fault is not None
+            counts[kind, row[kind]][row["status"]] += 1
+            counts[kind, row[kind]]["wrong"] += row["ends"] == "wrong"
     summary = Table("What became of them", ["", "", "scenes", "done", "refused (1)", "could not go on (2)", "wrong"],
                     f"Seed {SEED}. Done: power balance to 1e-3, plastic and friction power not negative, no tool that pulls, volume kept. "
                     "Wrong: done, and one of these does not hold. No run crashed, hung, or left files that are not whole, or it would be said here.")
     for (kind, value), count in sorted(counts.items()):
-        summary.add(kind, value, sum(count[s] for s in (0, 1, 2, None)), count[0], count[1], count[2], count["fault"])
+        summary.add(kind, value, sum(count[s] for s in (0, 1, 2, None)), count[0], count[1], count[2], count["wrong"])
     why = Table("Reasons", ["status", "reason", "scenes"])
     for (status, reason), n in sorted(reasons.items(), key=lambda item: -item[1]):
         why.add(status, reason, n)
-    return [summary, why], {"scenes": every}
+    return [summary, why]
