@@ -153,7 +153,7 @@ def run(session):
     variants = ("lengths x 1e-3", "stresses x 1e6", "lengths x 2^10", "stresses x 2^-20") if session.short else VARIANTS
     table = Table(
         "Difference from the scene in its own units",
-        ["scene", "units", "ends", "steps", "iterations", "largest difference", "in"],
+        ["scene", "units", "ends", "steps", "iterations", "largest difference", "in", "difference of the work"],
         "Every number of the scene that has the unit is multiplied, nothing else is changed (tolerance 1e-5, as by default). 0: the same to "
         "the last bit. Largest "
         "difference: of any answer in history.csv in any step, over the largest value of its column (powers: of the tools' power).",
@@ -161,22 +161,22 @@ def run(session):
     for scene, entries in scenes.items():
         base = program.run(entries(Units()), f"{scene}, own units")
         session.check(base.done, f"{scene}: {base.message}")
-        table.add(scene, "own", "done" if base.done else base.reason, len(base.rows), base.iterations, None, "")
+        table.add(scene, "own", "done" if base.done else base.reason, len(base.rows), base.iterations, None, "", None)
         for name in variants:
             units = VARIANTS[name]
             other = program.run(entries(units), f"{scene}, {name}")
             if not (other.done and base.done):
                 session.check(False, f"{scene}, {name}: {other.message}")
-                table.add(scene, name, other.reason, len(other.rows), None, None, "")
+                table.add(scene, name, other.reason, len(other.rows), None, None, "", None)
                 continue
             deviation, column = difference(base, other, units)
-            table.add(scene, name, "done", len(other.rows), other.iterations, deviation, column)
+            work = other.work / (units.stress * units.length**3) / base.work - 1
+            table.add(scene, name, "done", len(other.rows), other.iterations, deviation, column, work)
             if "2^" in name:
                 session.check(deviation == 0, f"{scene}, {name}: {column} differs by {deviation:.1e}")
             elif "remeshing" not in scene:
                 session.check(deviation < 1e-8, f"{scene}, {name}: {column} differs by {deviation:.1e}")
             else:
                 # Rounding decides between meshes that are as good as each other (doc/stability.md).
-                work = other.work / (units.stress * units.length**3) / base.work - 1
                 session.check(abs(work) < 0.01, f"{scene}, {name}: work differs by {work:.1e}")
     return [table], {"units": table}
