@@ -132,6 +132,19 @@ namespace axiforge::solvers
 
         CellRecovery &kept = recovery[cell];
         cell_divergence(geometry, kept.divergence);
+        double flux[n_pressure], projected[n_pressure];
+        for (unsigned int i = 0; i < n_pressure; ++i)
+          {
+            kept.flux[i] = 0;
+            for (unsigned int j = 0; j < n_dofs; ++j)
+              kept.flux[i] += kept.divergence.gradient[i][j] * v[j];
+          }
+        if (scene.flow.classical())
+          {
+            solve_mass(kept.divergence, kept.flux, projected);
+            for (unsigned int i = 0; i < n_pressure; ++i)
+              pressure[cell][i] = lambda * projected[i];
+          }
         for (unsigned int j = 0; j < n_dofs; ++j)
           {
             double pressure_force = 0;
@@ -140,12 +153,8 @@ namespace axiforge::solvers
             magnitude[j] = std::abs(force[j]) + std::abs(pressure_force);
             force[j] += pressure_force;
           }
-        double flux[n_pressure], projected[n_pressure];
         for (unsigned int i = 0; i < n_pressure; ++i)
           {
-            kept.flux[i] = 0;
-            for (unsigned int j = 0; j < n_dofs; ++j)
-              kept.flux[i] += kept.divergence.gradient[i][j] * v[j];
             flux[i] = kept.flux[i];
             if (!scene.flow.iterated()) // the plain penalty asks for div v = p / lambda
               for (unsigned int j = 0; j < n_pressure; ++j)

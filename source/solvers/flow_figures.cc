@@ -57,6 +57,8 @@ namespace axiforge::solvers
                             record.power_friction - record.power_contact - record.power_volume;
     if (optional_features && scene.accuracy.estimated)
       estimate_solver_errors(record);
+    if (scene.flow.estimate_condition)
+      record.condition = system->condition();
 
     result.contacts = contact->nodes;
     result.cell_history.resize(state.tables.cells.size());

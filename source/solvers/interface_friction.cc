@@ -17,6 +17,21 @@ namespace axiforge::solvers
     }
 
 
+    /// Largest stored traction that the primal-dual tangent may use [MPa]: the cap; for norton,
+    /// which has none, K (v^2 + v0^2)^(q/2), so that the tangent is at least q times the secant.
+    /// Without a bound it can vanish, and the interface of a stiff law slides freely for one
+    /// iteration.
+    double dual_bound(const laws::Friction         &friction,
+                      const laws::FrictionResponse &response,
+                      const double                  slip,
+                      const double                  cap)
+    {
+      if (friction.kind() != FrictionKind::norton)
+        return cap;
+      return response.secant * std::hypot(slip, friction.regularisation_velocity());
+    }
+
+
     /// A value of the Gauss points, continued to a node of a side and kept near their range.
     template <typename PointData, typename Value>
     double continue_to_side(const PointData   *points,
@@ -180,10 +195,11 @@ namespace axiforge::solvers
         edge.traction[a]                      = response.traction;
         edge.force[a]                         = edge.measure[a] * response.traction;
         caps[e][a]                            = friction.cap(point.pressure, point.flow_stress);
-        tangents[e][a] =
-            newton ? laws::primal_dual_tangent(response, stored[e].traction[a], caps[e][a])
-                   : response.secant;
-        edge.matrix[a][a] = edge.measure[a] * tangents[e][a];
+        tangents[e][a]                        = newton ? laws::primal_dual_tangent(
+                                                             response, stored[e].traction[a],
+                                                             dual_bound(friction, response, edge.slip[a], caps[e][a]))
+                                                       : response.secant;
+        edge.matrix[a][a]                     = edge.measure[a] * tangents[e][a];
       }
   }
 

@@ -6,6 +6,7 @@
 
 #include <axiforge/base/errors.h>
 #include <axiforge/base/phases.h>
+#include <axiforge/solvers/condition.h>
 #include <axiforge/solvers/linear_system.h>
 
 namespace axiforge::solvers
@@ -93,6 +94,18 @@ namespace axiforge::solvers
       std::string name() const override
       {
         return "cholmod";
+      }
+
+      double condition() const override
+      {
+        if (factor_seconds == 0) // nothing has been factorised yet
+          return LinearSystem::condition();
+        return estimate_condition(
+            matrix.diagonal(),
+            [this](const Eigen::VectorXd &x) -> Eigen::VectorXd {
+              return matrix.selfadjointView<Eigen::Lower>() * x;
+            },
+            [this](const Eigen::VectorXd &b) -> Eigen::VectorXd { return solver.solve(b); });
       }
 
     private:
