@@ -208,7 +208,7 @@ def variants(code, material, friction, quick):
     return out
 
 
-REFERENCES = [dict(cells=24, grading=4, step=0.0625), dict(cells=36, grading=4, step=0.0625)]
+REFERENCES = [dict(cells=24, grading=4, step=0.0625), dict(cells=32, grading=4, step=0.0625)]
 QUICK_REFERENCES = [dict(cells=16, grading=4, step=0.125), dict(cells=24, grading=4, step=0.125)]
 
 
@@ -476,12 +476,11 @@ def main():
         for code in codes_of(key[1]):
             jobs += [(key, code, v) for v in variants(code, *key, o.quick)]
     fine = QUICK_REFERENCES if o.quick else REFERENCES
-    # the costly ones last, so that a run that is broken off has something of every case
+    # The costly ones last, so that a benchmark that is broken off has something of every case
     jobs.sort(key=lambda job: job[2]["cells"])
     records = {key: [] for key in chosen}
-    for key in chosen:
-        if key[1] != "none":
-            jobs += [(key, "reference", v) for v in fine]
+    first = sum(job[2]["cells"] <= 8 for job in jobs)
+    jobs[first:first] = [(key, "reference", v) for key in chosen if key[1] != "none" for v in fine]
     for key, code, v in jobs:
         name = "axiforge" if code == "reference" else code
         label = "-".join(f"{k}{x}" for k, x in v.items())
