@@ -342,7 +342,35 @@ def shown(value, kind):
     return {"": text, "<": "< " + text, ">": "> " + text, "extrapolated": f"({text})"}[kind]
 
 
-def report(done, references, programs, results, picture):
+def quotient(theirs, ours):
+    """Text of the ratio; in brackets if extrapolated."""
+    if theirs[1] is None or ours[1] is None:
+        return "-"
+    value = theirs[0] / ours[0]
+    figure = f"{value:.1f}" if value < 10 else f"{value:.0f}" if value < 1e4 else f"{value:.0e}"
+    figure = "> " + figure if theirs[1] == ">" else figure
+    return f"({figure})" if "extrapolated" in (theirs[1], ours[1]) or ours[1] == ">" else figure
+
+
+def start_up(programs, work):
+    """CPU seconds of each program that does nothing, least of five."""
+    record = work / "start.json"
+    if record.exists():
+        return json.loads(record.read_text())
+    work.mkdir(parents=True, exist_ok=True)
+    (work / "nothing.edp").write_text('load "MUMPS_seq"\nload "Element_QF"\nload "qf11to25"\n')
+    nothing = {
+        "axiforge": [programs["axiforge"], "--version"],
+        "FreeFEM": [programs["FreeFEM"], "-nw", "-ne", "-v", "0", "nothing.edp"],
+        "CalculiX": [programs["CalculiX"], "-v"],
+    }
+    extra = {"FF_LOADPATH": "/usr/lib/freefem++"}
+    starts = {c: min(measured(nothing[c], work, 60, extra)[0] for _ in range(5)) for c in CODES if programs[c]}
+    record.write_text(json.dumps(starts))
+    return starts
+
+
+def report(done, references, programs, starts, results, picture):
     results.mkdir(parents=True, exist_ok=True)
     rows, fronts = [], {}
     for record in done:
@@ -374,21 +402,20 @@ def report(done, references, programs, results, picture):
     text = [f"Machine: {cpu}, {os.cpu_count()} cores, one used. Date: {datetime.date.today()}. {version}.", ""]
     text += ["CPU seconds of the whole process at equal error of the force (rms over the stroke, relative to the mean force),"]
     text += ["between the points of each code's Pareto front. `<`: already the cheapest run is better. In brackets:"]
-    text += ["extrapolated with the slope of the last points. `-`: no run got to the end.", ""]
-    text += ["| material | friction | error | axiforge | FreeFEM | CalculiX | FreeFEM / axiforge | CalculiX / axiforge |", "|---|---|---|---|---|---|---|---|"]
+    text += ["extrapolated with the slope of the last three points of the front. `-`: no run got to the end. Ratios: of the whole"]
+    text += ["processes, and after the slash without what each program takes to start and do nothing: "]
+    text[-1] += ", ".join(f"{code} {seconds:.2f} s" for code, seconds in starts.items()) + "."
+    text += ["", "| material | friction | error | axiforge | FreeFEM | CalculiX | FreeFEM / axiforge | CalculiX / axiforge |", "|---|---|---|---|---|---|---|---|"]
     for key in references:
-        for error in (1e-2, 1e-3):
-            at = {code: seconds_at(fronts.get((key, code), []), error) for code in CODES}
-            ratio = []
+        for error in (1e-2, 3e-3, 1e-3):
+            at, ratio = {}, []
+            for code in CODES:
+                points = fronts.get((key, code), [])
+                net = [(e, max(t - starts.get(code, 0), 1e-2)) for e, t in points]
+                at[code] = (seconds_at(points, error), seconds_at(net, error))
             for code in ("FreeFEM", "CalculiX"):
-                ours, theirs = at["axiforge"], at[code]
-                if theirs[1] is None or ours[1] is None:
-                    ratio.append("-")
-                else:
-                    value = theirs[0] / ours[0]
-                    figure = f"{value:.1f}" if value < 10 else f"{value:.0f}"
-                    ratio.append(f"({figure})" if "extrapolated" in (theirs[1], ours[1]) else figure)
-            text.append(f"| {key[0]} | {FRICTIONS[key[1]]} | {100 * error:g} % | " + " | ".join([shown(*at[c]) for c in CODES] + ratio) + " |")
+                ratio.append(" / ".join(quotient(at[code][i], at["axiforge"][i]) for i in (0, 1)))
+            text.append(f"| {key[0]} | {FRICTIONS[key[1]]} | {100 * error:g} % | " + " | ".join([shown(*at[c][0]) for c in CODES] + ratio) + " |")
     text += ["", "Reference curves and what the finest runs of the peers say of them. The bar is the rms difference of the fits of", "the two finest meshes; the mean error of a run has its sign, the saw-tooth averaged out.", ""]
     text += ["| material | friction | bar of the force | of the radius | code | finest run that got to the end | rms | mean error | radius |", "|---|---|---|---|---|---|---|---|---|"]
     for key, reference in references.items():
@@ -493,7 +520,7 @@ def main():
         usable = [r for r in records[key] if "cpu" in r]
         if key[1] == "none" or len(usable) == 2:
             references[key] = Reference(*key, usable)
-    report(done, references, programs, results, picture)
+    report(done, references, programs, start_up(programs, work), results, picture)
     print((results / "peers.md").read_text())
 
 
