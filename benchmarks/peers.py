@@ -54,7 +54,7 @@ LAW = {
 
 def end_stroke(material, friction):
     """Rate-independent sliding uses the meshes of all three codes up before 10 mm; this is where it is cut."""
-    return 6.0 if material == "plastic" and friction in ("shear", "coulomb") else 10.0
+    return 4.0 if material == "plastic" and friction in ("shear", "coulomb") else 10.0
 
 
 # ---- The runs -----------------------------------------------------------------------------------------------------
@@ -316,7 +316,8 @@ def front(points):
 
 def seconds_at(points, error):
     """Seconds at an error between the points of the front, in logarithms. With it how it was had: '' between points,
-    '<' the cheapest run is better than that, 'extrapolated' from the last two thirds of the front, None: not at all."""
+    '<' the cheapest run is better than that, 'extrapolated' from the last three points, '>' the most accurate run is
+    worse and the time is that run's, None: no run."""
     line = front(points)
     if not line:
         return math.nan, None
@@ -326,9 +327,11 @@ def seconds_at(points, error):
         if e1 <= error:
             share = math.log(e0 / error) / math.log(e0 / e1)
             return t0 * (t1 / t0) ** share, ""
-    if len(line) > 2:
+    # Beyond the most accurate run: no farther than a factor of five, and with a slope that makes sense
+    if len(line) > 2 and error >= 0.2 * line[-1][0]:
         slope = np.polyfit(np.log([p[0] for p in line[-3:]]), np.log([p[1] for p in line[-3:]]), 1)[0]
-        return line[-1][1] * (error / line[-1][0]) ** slope, "extrapolated"
+        if -4 <= slope <= -0.3:
+            return line[-1][1] * (error / line[-1][0]) ** slope, "extrapolated"
     return line[-1][1], ">"
 
 
@@ -402,7 +405,8 @@ def report(done, references, programs, starts, results, picture):
     text = [f"Machine: {cpu}, {os.cpu_count()} cores, one used. Date: {datetime.date.today()}. {version}.", ""]
     text += ["CPU seconds of the whole process at equal error of the force (rms over the stroke, relative to the mean force),"]
     text += ["between the points of each code's Pareto front. `<`: already the cheapest run is better. In brackets:"]
-    text += ["extrapolated with the slope of the last three points of the front. `-`: no run got to the end. Ratios: of the whole"]
+    text += ["extrapolated by the slope of the last three points of the front. `>`: no run is that accurate, time of the most"]
+    text += ["accurate one. `-`: no run got to the end. Ratios: of the whole"]
     text += ["processes, and after the slash without what each program takes to start and do nothing: "]
     text[-1] += ", ".join(f"{code} {seconds:.2f} s" for code, seconds in starts.items()) + "."
     text += ["", "| material | friction | error | axiforge | FreeFEM | CalculiX | FreeFEM / axiforge | CalculiX / axiforge |", "|---|---|---|---|---|---|---|---|"]
