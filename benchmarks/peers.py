@@ -336,8 +336,9 @@ def seconds_at(points, error):
         if e1 <= error:
             share = math.log(e0 / error) / math.log(e0 / e1)
             return t0 * (t1 / t0) ** share, ""
-    # Beyond the most accurate run: no farther than a factor of five, and with a slope that makes sense
-    if len(line) > 2 and error >= 0.2 * line[-1][0]:
+    # Beyond the most accurate run: no farther than a factor of 2.5, with a slope that makes sense, and only if the
+    # costliest run is the most accurate one
+    if len(line) > 2 and error >= 0.4 * line[-1][0] and max(points, key=lambda p: p[1])[0] < 1.05 * line[-1][0]:
         slope = np.polyfit(np.log([p[0] for p in line[-3:]]), np.log([p[1] for p in line[-3:]]), 1)[0]
         if -4 <= slope <= -0.3:
             return line[-1][1] * (error / line[-1][0]) ** slope, "extrapolated"
@@ -356,7 +357,7 @@ def shown(value, kind):
 
 def quotient(theirs, ours):
     """Text of the ratio; in brackets if extrapolated."""
-    if theirs[1] is None or ours[1] is None:
+    if theirs[1] is None or ours[1] is None or (theirs[1] == ">" and ours[1] in (">", "extrapolated")):
         return "-"
     value = theirs[0] / ours[0]
     figure = f"{value:.1f}" if value < 10 else f"{value:.0f}" if value < 1e4 else f"{value:.0e}"
@@ -415,7 +416,7 @@ def report(done, references, programs, starts, results, picture):
     text += ["CPU seconds of the whole process at equal error of the force (rms over the stroke, relative to the mean force),"]
     text += ["between the points of each code's Pareto front. `<`: already the cheapest run is better. In brackets:"]
     text += ["extrapolated by the slope of the last three points of the front. `>`: no run is that accurate, time of the most"]
-    text += ["accurate one. `-`: no run got to the end. Ratios: of the whole"]
+    text += ["accurate one. `-`: no run got to the end, or no ratio can be said. Ratios: of the whole"]
     text += ["processes, and after the slash without what each program takes to start and do nothing: "]
     text[-1] += ", ".join(f"{code} {seconds:.2f} s" for code, seconds in starts.items()) + "."
     text += ["", "| material | friction | error | axiforge | FreeFEM | CalculiX | FreeFEM / axiforge | CalculiX / axiforge |", "|---|---|---|---|---|---|---|---|"]
