@@ -514,6 +514,8 @@ def main():
             print(f"{code} is not installed and left out: apt-get install {package}")
     done, references = [], {}
     chosen = [key for key in cases(o.quick) if o.case in "-".join(key)]
+    if not chosen:
+        sys.exit(f'--case "{o.case}": no such case; there are ' + ", ".join("-".join(key) for key in cases(o.quick)))
     jobs = []
     for key in chosen:
         for code in codes_of(key[1]):
