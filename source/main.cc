@@ -7,6 +7,7 @@
 #include <axiforge/base/blas.h>
 #include <axiforge/base/errors.h>
 #include <axiforge/base/phases.h>
+#include <axiforge/base/single_process.h>
 #include <axiforge/process/run.h>
 #include <axiforge/study/study.h>
 
@@ -56,6 +57,7 @@ int main(int argc, char **argv)
   for (int i = 0; i < argc; ++i)
     options.command_line += (i ? " " : "") + std::string(argv[i]);
 
+  axiforge::expect_single_process();
   CLI::App  app("axiforge: axisymmetric forging by the viscoplastic flow formulation");
   CLI::App *study = app.add_subcommand(
       "study", "Repeat a scene for the values of its section Study and compare the results");

@@ -62,6 +62,17 @@ if(TARGET axiforge)
   endif()
 endif()
 
+# The short form of the stress tests (doc/stability.md), a case for each group. They need nothing but python3.
+find_program(PYTHON3_PROGRAM python3)
+if(TARGET axiforge AND PYTHON3_PROGRAM)
+  foreach(group penalty scaling invariance friction material steps shapes random_scenes)
+    add_test(NAME stress_${group}
+      COMMAND ${PYTHON3_PROGRAM} ${CMAKE_SOURCE_DIR}/benchmarks/stress/stress.py $<TARGET_FILE:axiforge>
+        ${group} --short)
+    set_tests_properties(stress_${group} PROPERTIES LABELS case TIMEOUT 300)
+  endforeach()
+endif()
+
 # What the tests labelled "quick" need, and no more: the Debug build makes this target. A test without a
 # time limit of its own gets one.
 add_custom_target(quick_tests)

@@ -16,7 +16,7 @@ If (RadialCells < 1 || AxialCells < 1)
   Error("ring.geo: RadialCells = %g, AxialCells = %g have to be 1 or more", RadialCells, AxialCells);
 EndIf
 
-axial_ratio = (AxialCells > 1) ? Grading ^ (1 / (AxialCells - 1)) : 1;
+axial_ratio = Grading ^ (1 / Max(AxialCells - 1, 1));
 
 Point(1) = {InnerRadius, 0, 0};
 Point(2) = {OuterRadius, 0, 0};

@@ -39,16 +39,34 @@ namespace axiforge::meshing
     /// What gmsh's entities stand for.
     struct Model
     {
+      double                              unit;   ///< of gmsh's lengths [mm]
       std::vector<std::pair<int, Corner>> points; ///< of even vertices
       std::vector<std::pair<int, Corner>> curves; ///< over edges k and k + 1, k even
     };
+
+
+    /// Power of two with which the outline is 32 to 64 long: gmsh has tolerances that are lengths
+    /// (1e-8), so that a small workpiece would get another mesh than the same one in metres.
+    double unit_of(const std::vector<NewLoop> &loops)
+    {
+      Point lower(1e300, 1e300), upper(-1e300, -1e300);
+      for (const NewLoop &loop : loops)
+        for (const NewNode &node : loop.vertices)
+          for (unsigned int c = 0; c < 2; ++c)
+            {
+              lower[c] = std::min(lower[c], node.position[c]);
+              upper[c] = std::max(upper[c], node.position[c]);
+            }
+      return std::ldexp(1., std::ilogb((upper - lower).norm()) - 5);
+    }
 
 
     Model make_model(const std::vector<NewLoop> &loops)
     {
       namespace geo = gmsh::model::geo;
       gmsh::model::add("remeshing");
-      Model            model;
+      Model model;
+      model.unit = unit_of(loops);
       std::vector<int> curve_loops;
       for (unsigned int l = 0; l < loops.size(); ++l)
         {
@@ -56,8 +74,8 @@ namespace axiforge::meshing
           // In single precision: the rounding errors by which runs on one and on two ranks differ
           // should not lead gmsh to other meshes. The exact places are put back afterwards.
           for (const NewNode &node : loops[l].vertices)
-            points.push_back(geo::addPoint(static_cast<float>(node.position[0]),
-                                           static_cast<float>(node.position[1]), 0));
+            points.push_back(geo::addPoint(static_cast<float>(node.position[0] / model.unit),
+                                           static_cast<float>(node.position[1] / model.unit), 0));
           const unsigned int n = points.size();
           for (unsigned int k = 0; k < n; k += 2)
             {
@@ -95,7 +113,7 @@ namespace axiforge::meshing
       gmsh::model::mesh::getNodes(tags, x, parametric, -1, -1, false, false);
       std::map<std::size_t, Point> nodes;
       for (std::size_t i = 0; i < tags.size(); ++i)
-        nodes[tags[i]] = Point(x[3 * i], x[3 * i + 1]);
+        nodes[tags[i]] = model.unit * Point(x[3 * i], x[3 * i + 1]);
       std::vector<int>                      types;
       std::vector<std::vector<std::size_t>> all_elements, all_nodes;
       gmsh::model::mesh::getElements(types, all_elements, all_nodes, 2);
@@ -237,7 +255,8 @@ namespace axiforge::meshing
         const Model model = make_model(loops);
         // In single precision for the reason that the points are.
         gmsh::model::mesh::setSizeCallback([&](int, int, const double x, const double y, double) {
-          return static_cast<double>(static_cast<float>(field.at(Point(x, y))));
+          return static_cast<double>(
+              static_cast<float>(field.at(model.unit * Point(x, y)) / model.unit));
         });
         std::srand(1); // gmsh shifts points at random, and seeds only once per process
         {

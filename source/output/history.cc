@@ -59,6 +59,8 @@ namespace axiforge::output
                                 { "wall_contact_s", r.times.contact },
                                 { "wall_factor_s", r.times.factor },
                                 { "wall_solve_s", r.times.solve } });
+      if (scene.flow.estimate_condition)
+        list.emplace_back("condition", r.condition);
       if (scene.process.fill_radius > 0)
         list.emplace_back("fill", r.fill);
       if (scene.accuracy.estimated)

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <axiforge/base/features.h>
 #include <axiforge/base/phases.h>
 #include <axiforge/process/accuracy.h>
 #include <axiforge/process/mesh_change.h>
@@ -221,7 +222,7 @@ namespace axiforge::process
 
   void estimate_errors(const scene::Scene &scene, State &state, StepRecord &record)
   {
-    if (!scene.accuracy.estimated)
+    if (!optional_features || !scene.accuracy.estimated)
       return;
     const Phase           phase("error estimate");
     AccuracyRecord       &accuracy = state.accuracy;

@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include <axiforge/base/errors.h>
+#include <axiforge/base/features.h>
 #include <axiforge/base/phases.h>
 #include <axiforge/process/fold_watch.h>
 #include <axiforge/process/step.h>
@@ -49,7 +50,7 @@ namespace axiforge::process
 
   void FoldWatch::after_step(const State &state, const StepRecord &record)
   {
-    if (scene.folding.when_found == "off")
+    if (!optional_features || scene.folding.when_found == "off")
       return;
     const Phase phase("folds");
     const auto  fold =

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <axiforge/base/features.h>
 #include <axiforge/base/phases.h>
 #include <axiforge/process/accuracy.h>
 #include <axiforge/process/mesh_change.h>
@@ -28,7 +29,7 @@ namespace axiforge::process
                       std::unique_ptr<solvers::FlowSolver> &solver,
                       const double                          time_step)
   {
-    if (!scene.refinement.enabled)
+    if (!optional_features || !scene.refinement.enabled)
       return;
     const Phase phase("adaptive refinement");
     adapt_to_geometry(scene, state, solver);
@@ -63,7 +64,7 @@ namespace axiforge::process
                                     const StepRecord                     &record)
   {
     meshing::AdaptReport report;
-    if (!scene.refinement.enabled)
+    if (!optional_features || !scene.refinement.enabled)
       return report;
     const Phase phase("adaptive refinement");
     if (scene.accuracy.driven())

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include <axiforge/base/errors.h>
+#include <axiforge/base/features.h>
 #include <axiforge/base/phases.h>
 #include <axiforge/meshing/remesh.h>
 #include <axiforge/process/accuracy.h>
@@ -40,6 +41,8 @@ namespace axiforge::process
                     const StepRecord                     &last)
     {
       constexpr unsigned int repeats_before_remeshing = 2;
+      if constexpr (!optional_features)
+        return advance(scene, state, *solver, choose_step_size(scene, state, last), last);
       if (const std::string reason = meshing::reason_to_remesh(scene, state); !reason.empty())
         remesh(scene, state, solver, progress, reason);
       if (scene.remeshing.enabled && state.step > 0 && state.remeshing.last_attempt < state.step)

@@ -7,6 +7,7 @@
 
 #include <axiforge/base/collective.h>
 #include <axiforge/base/errors.h>
+#include <axiforge/base/features.h>
 #include <axiforge/base/phases.h>
 #include <axiforge/meshing/initial_state.h>
 #include <axiforge/output/results.h>
@@ -83,6 +84,34 @@ namespace axiforge::process
                        "material hardly depends on the strain rate: the lagged viscosity often "
                        "does not converge "
                        "there. \"Layer viscosity = layer\" does.\n";
+    }
+
+
+    /// A scene that asks for what the build does not have is refused.
+    void check_features(const std::vector<scene::SceneParameters> &operations)
+    {
+      if constexpr (!optional_features)
+        for (const scene::SceneParameters &operation : operations)
+          {
+            std::string asked;
+            if (operation.refinement.enabled)
+              asked = "\"Refinement/Enabled\"";
+            if (operation.remeshing.enabled)
+              asked = "\"Remeshing/Enabled\"";
+            if (operation.accuracy.estimate_errors || operation.accuracy.target != "none")
+              asked = "\"Accuracy\"";
+            if (operation.folding.when_found != "off")
+              asked = "\"Folding/When found\"";
+            if (!operation.gauges.empty())
+              asked = "\"Gauges\"";
+            for (const scene::ToolParameters &tool : operation.tools)
+              if (tool.friction.law != "none" && tool.friction.law != "sticking")
+                asked = "\"Tool " + tool.name + "/Friction/Law\"";
+            if (!asked.empty())
+              throw InputError(
+                  "This build was made with AXIFORGE_CORE_ONLY, for a benchmark: the scene's " +
+                  asked + " is not in it. Build without that option.");
+          }
     }
 
 
@@ -218,6 +247,7 @@ namespace axiforge::process
     const ParameterFile  file(options.parameter_file, options.overrides);
 
     const std::vector<scene::SceneParameters> operations = scene::read_operations(file);
+    check_features(operations);
     if (options.print_parameters)
       {
         if (first)

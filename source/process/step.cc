@@ -2,6 +2,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <axiforge/base/errors.h>
+#include <axiforge/base/features.h>
 #include <axiforge/base/phases.h>
 #include <axiforge/process/accuracy.h>
 #include <axiforge/process/end_condition.h>
@@ -167,7 +168,7 @@ namespace axiforge::process
       {
         solvers::FlowResult result = solver.solve(time_step);
         iterations += result.record.iterations;
-        if (result.converged && scene.accuracy.estimated)
+        if (optional_features && result.converged && scene.accuracy.estimated)
           result.record.errors.time = time_error(scene, state, solver, result, time_step);
         times.add(result.record.times);
         if (result.converged)

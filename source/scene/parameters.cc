@@ -98,8 +98,10 @@ namespace axiforge::scene
         "Incompressibility", incompressibility,
         "'iterated penalty': the pressure is corrected in every iteration and the flow "
         "is incompressible at convergence whatever the penalty. 'penalty': the plain "
-        "penalty method, p = lambda div v.",
-        Patterns::Selection("iterated penalty|penalty"));
+        "penalty method, p = lambda div v, the pressure of a cell being an unknown that "
+        "is condensed. 'classical penalty': the same with lambda div v in the residual "
+        "itself; for comparison, it loses as many digits as lambda has.",
+        Patterns::Selection("iterated penalty|penalty|classical penalty"));
     prm.add_parameter(
         "Penalty", penalty,
         "lambda over the viscosity sigma / (3 epsdot) at the reference rate. With the "
@@ -139,6 +141,11 @@ namespace axiforge::scene
                       "Fill-reducing ordering of cholmod. 'automatic': amd below 10,000 unknowns, "
                       "nested dissection above.",
                       Patterns::Selection("automatic|amd|nested dissection"));
+    prm.add_parameter(
+        "Estimate condition", estimate_condition,
+        "Whether history.csv gets a column condition: an estimate of the condition number of "
+        "the last matrix of each step, rows and columns scaled to a unit diagonal. It costs 40 "
+        "more solves in a step. Only with cholmod; nan with mumps.");
   }
 
 

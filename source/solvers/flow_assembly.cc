@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <deal.II/base/mpi.h>
 
+#include <axiforge/base/features.h>
 #include <axiforge/base/phases.h>
 #include <axiforge/laws/deviatoric.h>
 #include <axiforge/solvers/flow_solver.h>
@@ -131,6 +132,19 @@ namespace axiforge::solvers
 
         CellRecovery &kept = recovery[cell];
         cell_divergence(geometry, kept.divergence);
+        double flux[n_pressure], projected[n_pressure];
+        for (unsigned int i = 0; i < n_pressure; ++i)
+          {
+            kept.flux[i] = 0;
+            for (unsigned int j = 0; j < n_dofs; ++j)
+              kept.flux[i] += kept.divergence.gradient[i][j] * v[j];
+          }
+        if (scene.flow.classical())
+          {
+            solve_mass(kept.divergence, kept.flux, projected);
+            for (unsigned int i = 0; i < n_pressure; ++i)
+              pressure[cell][i] = lambda * projected[i];
+          }
         for (unsigned int j = 0; j < n_dofs; ++j)
           {
             double pressure_force = 0;
@@ -139,12 +153,8 @@ namespace axiforge::solvers
             magnitude[j] = std::abs(force[j]) + std::abs(pressure_force);
             force[j] += pressure_force;
           }
-        double flux[n_pressure], projected[n_pressure];
         for (unsigned int i = 0; i < n_pressure; ++i)
           {
-            kept.flux[i] = 0;
-            for (unsigned int j = 0; j < n_dofs; ++j)
-              kept.flux[i] += kept.divergence.gradient[i][j] * v[j];
             flux[i] = kept.flux[i];
             if (!scene.flow.iterated()) // the plain penalty asks for div v = p / lambda
               for (unsigned int j = 0; j < n_pressure; ++j)
@@ -186,7 +196,7 @@ namespace axiforge::solvers
 
   void FlowSolver::add_external_forces()
   {
-    if (!cell_external.empty())
+    if (optional_features && !cell_external.empty())
       {
         for (CellDofs &force : cell_external)
           force.fill(0);
@@ -268,7 +278,7 @@ namespace axiforge::solvers
 
   void FlowSolver::add_friction_forces()
   {
-    if (friction->edges().empty())
+    if (!optional_features || friction->edges().empty())
       return;
     friction_force = 0;
     for (unsigned int e = 0; e < friction->edges().size(); ++e)

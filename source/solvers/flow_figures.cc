@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <deal.II/base/mpi.h>
 
+#include <axiforge/base/features.h>
 #include <axiforge/base/phases.h>
 #include <axiforge/solvers/flow_solver.h>
 
@@ -54,8 +55,10 @@ namespace axiforge::solvers
     record_boundaries(record);
     record.power_residual = record.power_tools + record.power_boundaries - record.power_plastic -
                             record.power_friction - record.power_contact - record.power_volume;
-    if (scene.accuracy.estimated)
+    if (optional_features && scene.accuracy.estimated)
       estimate_solver_errors(record);
+    if (scene.flow.estimate_condition)
+      record.condition = system->condition();
 
     result.contacts = contact->nodes;
     result.cell_history.resize(state.tables.cells.size());

@@ -235,7 +235,8 @@ namespace axiforge::solvers
         move_dual = true;
       }
 
-    if (!result.converged && !held_axially())
+    // A mesh that fails before its first residual has no conditions yet to tell from.
+    if (!result.converged && !is_new && !held_axially())
       failure =
           "nothing holds the workpiece along z: no tool touches it from both sides, and there is "
           "neither a symmetry line nor a boundary with an axial velocity (" +

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <axiforge/base/features.h>
 #include <axiforge/base/phases.h>
 #include <axiforge/solvers/interface_friction.h>
 
@@ -13,6 +14,21 @@ namespace axiforge::solvers
     {
       return kind == FrictionKind::coulomb || kind == FrictionKind::shear ||
              kind == FrictionKind::arctan || kind == FrictionKind::tangential_forces;
+    }
+
+
+    /// Largest stored traction that the primal-dual tangent may use [MPa]: the cap; for norton,
+    /// which has none, K (v^2 + v0^2)^(q/2), so that the tangent is at least q times the secant.
+    /// Without a bound it can vanish, and the interface of a stiff law slides freely for one
+    /// iteration.
+    double dual_bound(const laws::Friction         &friction,
+                      const laws::FrictionResponse &response,
+                      const double                  slip,
+                      const double                  cap)
+    {
+      if (friction.kind() != FrictionKind::norton)
+        return cap;
+      return response.secant * std::hypot(slip, friction.regularisation_velocity());
     }
 
 
@@ -86,7 +102,7 @@ namespace axiforge::solvers
                                    const double                  time_step,
                                    const bool                    newton)
   {
-    if (edges_.empty())
+    if (!optional_features || edges_.empty())
       return;
     const Phase phase("friction");
     for (unsigned int e = 0; e < edges_.size(); ++e)
@@ -179,10 +195,11 @@ namespace axiforge::solvers
         edge.traction[a]                      = response.traction;
         edge.force[a]                         = edge.measure[a] * response.traction;
         caps[e][a]                            = friction.cap(point.pressure, point.flow_stress);
-        tangents[e][a] =
-            newton ? laws::primal_dual_tangent(response, stored[e].traction[a], caps[e][a])
-                   : response.secant;
-        edge.matrix[a][a] = edge.measure[a] * tangents[e][a];
+        tangents[e][a]                        = newton ? laws::primal_dual_tangent(
+                                                             response, stored[e].traction[a],
+                                                             dual_bound(friction, response, edge.slip[a], caps[e][a]))
+                                                       : response.secant;
+        edge.matrix[a][a]                     = edge.measure[a] * tangents[e][a];
       }
   }
 

@@ -5,6 +5,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <axiforge/base/features.h>
 #include <axiforge/base/phases.h>
 #include <axiforge/state/gauges.h>
 
@@ -153,7 +154,7 @@ namespace axiforge
 
   std::vector<double> read_gauges(const std::vector<Gauge> &gauges, const State &state)
   {
-    if (gauges.empty())
+    if (!optional_features || gauges.empty())
       return {};
     const Phase         phase("gauges");
     std::vector<double> found;

@@ -69,19 +69,25 @@ namespace axiforge::scene
   /// `subsection Flow solver`
   struct FlowParameters
   {
-    std::string  incompressibility = "iterated penalty";
-    double       penalty           = 1e8;
-    std::string  iteration         = "newton";
-    double       regularisation    = 1e-3;
-    double       reference_rate    = 0;
-    double       tolerance         = 1e-5;
-    unsigned int most_iterations   = 60;
-    std::string  linear_solver     = "automatic";
-    std::string  ordering          = "automatic";
+    std::string  incompressibility  = "iterated penalty";
+    double       penalty            = 1e8;
+    std::string  iteration          = "newton";
+    double       regularisation     = 1e-3;
+    double       reference_rate     = 0;
+    double       tolerance          = 1e-5;
+    unsigned int most_iterations    = 60;
+    std::string  linear_solver      = "automatic";
+    std::string  ordering           = "automatic";
+    bool         estimate_condition = false;
 
     bool iterated() const
     {
       return incompressibility == "iterated penalty";
+    }
+    /// Whether the residual takes lambda div v itself for the pressure.
+    bool classical() const
+    {
+      return incompressibility == "classical penalty";
     }
     bool newton() const
     {

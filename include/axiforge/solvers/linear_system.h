@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -35,6 +36,12 @@ namespace axiforge::solvers
     virtual bool solve(Field &solution) = 0;
 
     virtual std::string name() const = 0;
+
+    /// Estimated condition number of the last matrix, scaled to a unit diagonal; nan: not known.
+    virtual double condition() const
+    {
+      return std::numeric_limits<double>::quiet_NaN();
+    }
 
     double      factor_seconds  = 0; ///< numeric factorisation, summed over all calls
     double      solve_seconds   = 0;

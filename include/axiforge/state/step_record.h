@@ -74,6 +74,7 @@ namespace axiforge
 
     unsigned int cells = 0, unknowns = 0, iterations = 0, set_changes = 0, repeats = 0;
     double       residual = 0, divergence = 0;
+    double       condition = 0; ///< of the last matrix, if the scene asks for it
     StepTimes    times;
 
     /// Of all remeshings so far, see RemeshingRecord.
