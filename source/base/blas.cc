@@ -47,8 +47,9 @@ namespace axiforge
     if (!std::getenv("OPENBLAS_NUM_THREADS"))
       if (const auto set = find_function<void(int)>("openblas_set_num_threads"))
         set(1);
-    // CHOLMOD asks for four threads in so many words, whatever OMP_NUM_THREADS says; no active level
-    // of parallelism stops it. On a matrix of 5,000 unknowns they take 2.4 times the CPU time.
+    // CHOLMOD asks for four threads in so many words, whatever OMP_NUM_THREADS says; no active
+    // level of parallelism stops it. On a matrix of 5,000 unknowns they take 2.4 times the CPU
+    // time.
     const char *wanted = std::getenv("OMP_NUM_THREADS");
     if (!wanted || std::strcmp(wanted, "1") == 0)
       if (const auto set = find_function<void(int)>("omp_set_max_active_levels"))

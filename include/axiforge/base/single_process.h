@@ -4,9 +4,9 @@
 namespace axiforge
 {
   /**
-   * Tells Open MPI that a process which nobody launched (no mpirun, no batch system) stays alone: it
-   * then starts no daemon beside it. Call it before MPI starts. A setting of the user wins; another
-   * MPI does not look at it.
+   * Tells Open MPI that a process which nobody launched (no mpirun, no batch system) stays alone:
+   * it then starts no daemon beside it. Call it before MPI starts. A setting of the user wins;
+   * another MPI does not look at it.
    */
   void expect_single_process();
 } // namespace axiforge

@@ -14,9 +14,9 @@ namespace axiforge::meshing
    * - where a boundary vertex has a single cell although the outline hardly turns (that cell would
    *   have an angle of some 180 degrees), the cells around the opposite corner are framed: they
    *   shrink, and a ring of new ones takes their rim. The vertex then has two cells. (To frame that
-   *   cell alone leaves trapezoids of 1 : 4 and a worst scaled Jacobian of 0.15 to 0.2 instead of 0.3
-   *   to 0.4.)
-   * Returns the number of changes. Expects and keeps boundary edges; sets the cells' nodes.
+   *   cell alone leaves trapezoids of 1 : 4 and a worst scaled Jacobian of 0.15 to 0.2 instead of
+   * 0.3 to 0.4.) Returns the number of changes. Expects and keeps boundary edges; sets the cells'
+   * nodes.
    */
   unsigned int repair_topology(NewMesh &made);
 

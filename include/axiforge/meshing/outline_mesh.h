@@ -20,12 +20,12 @@ namespace axiforge::meshing
 
   /**
    * Quadrilaterals within the loops: gmsh, with the boundary edges as they are given and sizes
-   * inside by the field, Mesh.Algorithm 6 and 5 with Mesh.RecombinationAlgorithm 2, and 3 where that
-   * gives no sound mesh. Each mesh is mended and smoothed (mesh_repair.h); if that does not give good
-   * cells, a row of cells is put along the boundary and smoothed in turn. The first mesh whose cells
-   * have Jacobians of 0.25 at all vertices and Gauss points is taken, or else the best. Boundary edges are
-   * curved, inner ones
-   * straight. Not collective: for one rank, whose mesh is then sent to the others.
+   * inside by the field, Mesh.Algorithm 6 and 5 with Mesh.RecombinationAlgorithm 2, and 3 where
+   * that gives no sound mesh. Each mesh is mended and smoothed (mesh_repair.h); if that does not
+   * give good cells, a row of cells is put along the boundary and smoothed in turn. The first mesh
+   * whose cells have Jacobians of 0.25 at all vertices and Gauss points is taken, or else the best.
+   * Boundary edges are curved, inner ones straight. Not collective: for one rank, whose mesh is
+   * then sent to the others.
    */
   NewMesh mesh_outline(const std::vector<NewLoop>                              &loops,
                        const SizeField                                         &field,

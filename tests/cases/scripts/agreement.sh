@@ -32,6 +32,14 @@ name=two_ranks
 ranks=2 run two_ranks 0 "${scene[@]}"
 compare cholmod/output/history.csv two_ranks/output/history.csv -v rel=1e-6 -v only="$shape"
 
+# A short first step, where MUMPS with pivoting filled in more than it had room for.
+short=(--set "Output/Fields = none" --set "Time stepping/Stroke per step = 0.01" --set "Process/End stroke = 0.01"
+  --set "Workpiece/Geometry parameters = Radius = 25, Height = 25, RadialCells = 25, AxialCells = 25")
+name=short_step
+run short_one 0 cylinder_upsetting.prm "${short[@]}"
+ranks=2 run short_two 0 cylinder_upsetting.prm "${short[@]}"
+compare short_one/output/history.csv short_two/output/history.csv -v rel=1e-6 -v only=force_upper_N,repeats
+
 # Cells divided and joined on the way, with hanging nodes.
 adaptive=(--set "Refinement/Enabled = true" --set "Refinement/Start cycles = 2" --set "Refinement/Every steps = 3"
   --set "Refinement/Coarsen fraction = 0.05")
