@@ -372,7 +372,7 @@ namespace
 
 int main(int argc, char **argv)
 {
-  axiforge::restart_with_suitable_blas(argv);
+  axiforge::use_suitable_blas();
   axiforge::use_one_thread();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv))

@@ -266,7 +266,7 @@ int main(int argc, char **argv)
       std::cerr << "linear_solvers SCENE.prm MOST_ITERATIONS [\"Section/Entry = value\" ...]\n";
       return 1;
     }
-  restart_with_suitable_blas(argv);
+  use_suitable_blas();
   int                                      one = 1;
   dealii::Utilities::MPI::MPI_InitFinalize mpi(one, argv, 1);
   use_one_thread();

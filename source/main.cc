@@ -93,8 +93,7 @@ int main(int argc, char **argv)
     }
 
   options.resume = resume->count() > 0;
-  if (!options.validate && !options.print_parameters)
-    axiforge::restart_with_suitable_blas(argv);
+  axiforge::use_suitable_blas();
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   axiforge::use_one_thread();
   if (options.timing)

@@ -3,7 +3,6 @@
 #include <cstring>
 
 #include <dlfcn.h>
-#include <unistd.h>
 
 #include <axiforge/base/blas.h>
 
@@ -19,11 +18,14 @@ namespace axiforge
   } // namespace
 
 
-  void restart_with_suitable_blas(char **argv)
+  void use_suitable_blas()
   {
 #if defined(__x86_64__) && defined(__GNUC__)
     const auto core_name = find_function<char *()>("openblas_get_corename");
-    if (std::getenv("OPENBLAS_CORETYPE") || !core_name || std::strcmp(core_name(), "Prescott") != 0)
+    const auto forget    = find_function<void()>("gotoblas_dynamic_quit");
+    const auto choose    = find_function<void()>("gotoblas_dynamic_init");
+    if (std::getenv("OPENBLAS_CORETYPE") || !core_name || !forget || !choose ||
+        std::strcmp(core_name(), "Prescott") != 0)
       return;
     const char *core = nullptr;
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
@@ -31,13 +33,11 @@ namespace axiforge
       core = "SkylakeX";
     else if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
       core = "Haswell";
-    if (core)
-      {
-        setenv("OPENBLAS_CORETYPE", core, 1); // which also keeps us from coming here again
-        execv("/proc/self/exe", argv);
-      }
-#else
-    (void)argv;
+    if (!core)
+      return;
+    setenv("OPENBLAS_CORETYPE", core, 1); // which the choice goes by
+    forget();
+    choose();
 #endif
   }
 

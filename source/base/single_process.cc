@@ -11,5 +11,7 @@ namespace axiforge
       if (std::getenv(launched))
         return;
     setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+    setenv("OMPI_MCA_pml", "ob1", 0);
+    setenv("OMPI_MCA_btl", "self", 0);
   }
 } // namespace axiforge
