@@ -2,13 +2,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <map>
 #include <vector>
 
-#include <deal.II/base/mpi.h>
-
+#include <axiforge/base/collective.h>
 #include <axiforge/base/errors.h>
 #include <axiforge/meshing/folding.h>
 
@@ -92,26 +90,6 @@ namespace axiforge::meshing
               }
             edges.push_back(edge);
           }
-      return edges;
-    }
-
-
-    std::vector<Edge> all_edges(const State &state)
-    {
-      static_assert(sizeof(Edge) % sizeof(double) == 0);
-      const std::vector<Edge> mine = owned_edges(state);
-      std::vector<double>     numbers(mine.size() * sizeof(Edge) / sizeof(double));
-      if (!mine.empty())
-        std::memcpy(numbers.data(), mine.data(), mine.size() * sizeof(Edge));
-      std::vector<Edge> edges;
-      for (const std::vector<double> &part :
-           dealii::Utilities::MPI::all_gather(state.communicator, numbers))
-        {
-          const std::size_t before = edges.size();
-          edges.resize(before + part.size() * sizeof(double) / sizeof(Edge));
-          if (!part.empty())
-            std::memcpy(&edges[before], part.data(), part.size() * sizeof(double));
-        }
       return edges;
     }
 
@@ -241,7 +219,7 @@ namespace axiforge::meshing
     {
     public:
       Search(const State &state, const double horizon, const double smallest_gap)
-          : loops(make_loops(all_edges(state)))
+          : loops(make_loops(gather_rows(state.communicator, owned_edges(state))))
           , size(state.size)
           , last_time_step(state.last_time_step)
           , horizon(horizon)

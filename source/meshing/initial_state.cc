@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <deal.II/distributed/solution_transfer.h>
 
+#include <axiforge/base/collective.h>
 #include <axiforge/base/errors.h>
 #include <axiforge/meshing/initial_state.h>
 #include <axiforge/state/measures.h>
@@ -58,8 +59,7 @@ namespace axiforge::meshing
 
   scene::WorkpieceOutline outline_of(const State &state)
   {
-    namespace MPI = dealii::Utilities::MPI;
-    scene::WorkpieceOutline                           outline;
+      scene::WorkpieceOutline                           outline;
     std::map<dealii::types::boundary_id, std::string> name_of;
     for (const auto &[name, id] : state.boundary_ids)
       if (id != axis_id && id != symmetry_id && id != surface_id)
@@ -80,9 +80,7 @@ namespace axiforge::meshing
           };
           mine.push_back({ { x[0], x[1], node.free_surface ? 1. : 0., part(0), part(1) } });
         }
-    std::vector<std::array<double, 5>> all;
-    for (const auto &part : MPI::all_gather(state.communicator, mine))
-      all.insert(all.end(), part.begin(), part.end());
+    std::vector<std::array<double, 5>> all = gather_rows(state.communicator, mine);
     std::sort(all.begin(), all.end());
 
     outline.lower = Point(1e300, 1e300);

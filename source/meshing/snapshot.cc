@@ -1,38 +1,15 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <algorithm>
-#include <cstring>
-#include <type_traits>
 
-#include <deal.II/base/mpi.h>
 #include <deal.II/grid/cell_id.h>
 
+#include <axiforge/base/collective.h>
 #include <axiforge/meshing/snapshot.h>
 
 namespace axiforge::meshing
 {
   namespace
   {
-    /// The rows of all ranks, one rank after the other.
-    template <typename Row>
-    std::vector<Row> gather(const std::vector<Row> &rows, const MPI_Comm communicator)
-    {
-      static_assert(std::is_trivially_copyable<Row>::value && sizeof(Row) % sizeof(double) == 0);
-      const std::size_t   width = sizeof(Row) / sizeof(double);
-      std::vector<double> mine(width * rows.size());
-      if (!rows.empty())
-        std::memcpy(mine.data(), rows.data(), sizeof(Row) * rows.size());
-      std::vector<Row> all;
-      for (const std::vector<double> &part : dealii::Utilities::MPI::all_gather(communicator, mine))
-        {
-          const std::size_t before = all.size();
-          all.resize(before + part.size() / width);
-          if (!part.empty())
-            std::memcpy(all.data() + before, part.data(), sizeof(double) * part.size());
-        }
-      return all;
-    }
-
-
     SurfaceNode surface_node(const NodeContact &contact, const EdgeFriction &friction, unsigned a)
     {
       SurfaceNode node;
@@ -106,7 +83,8 @@ namespace axiforge::meshing
         mine.edges.push_back(snapshot);
       }
 
-    Snapshot all{ gather(mine.cells, state.communicator), gather(mine.edges, state.communicator) };
+    Snapshot all{ gather_rows(state.communicator, mine.cells),
+                  gather_rows(state.communicator, mine.edges) };
     std::sort(all.cells.begin(), all.cells.end(), [](const auto &a, const auto &b) {
       return std::lexicographical_compare(a.id, a.id + 4, b.id, b.id + 4);
     });

@@ -18,6 +18,10 @@ namespace axiforge::meshing
     constexpr unsigned int column[9] = { 0, 2, 0, 2, 0, 2, 1, 1, 1 };
     constexpr unsigned int row[9]    = { 0, 0, 2, 2, 1, 1, 0, 2, 1 };
 
+    /// Newton's step in reference coordinates after which, its error being squared, the next one is
+    /// in the last digits.
+    constexpr double converged_step = 1e-8;
+
     /// Farthest that a point may be outside of its cell, in reference coordinates.
     constexpr double farthest_outside = 0.05;
 
@@ -168,10 +172,12 @@ namespace axiforge::meshing
       for (unsigned int a = 0; a < 9; ++a)
         for (unsigned int c = 0; c < 2; ++c)
           d[c] -= shape.value[a] * nodes[a][c];
-      return std::hypot(d[0], d[1]);
+      return std::sqrt(d[0] * d[0] + d[1] * d[1]);
     };
-    const double size = std::hypot(nodes[3][0] - nodes[0][0], nodes[3][1] - nodes[0][1]) +
-                        std::hypot(nodes[2][0] - nodes[1][0], nodes[2][1] - nodes[1][1]);
+    const auto diagonal = [&](const unsigned int a, const unsigned int b) {
+      return Vector2({ nodes[b][0] - nodes[a][0], nodes[b][1] - nodes[a][1] }).norm();
+    };
+    const double size = diagonal(0, 3) + diagonal(1, 2);
     xi[0] = xi[1] = 0.5;
     double d[2];
     for (unsigned int iteration = 0; iteration < 25; ++iteration)
@@ -198,7 +204,7 @@ namespace axiforge::meshing
             largest           = std::max(largest, std::abs(next - xi[c]));
             xi[c]             = next;
           }
-        if (largest < 1e-15)
+        if (largest < converged_step)
           break;
       }
     // How far the point is from the cell: outside of its unit cell, or not met at all.

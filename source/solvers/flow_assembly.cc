@@ -10,6 +10,13 @@ namespace axiforge::solvers
 {
   namespace MPI = dealii::Utilities::MPI;
 
+  namespace
+  {
+    /// Residual and divergence below which the tangent takes the motion of the cells along.
+    constexpr double near_solution = 0.25;
+  } // namespace
+
+
   void FlowSolver::load_cell(const Field &field, const unsigned int cell, CellDofs &values) const
   {
     const auto &nodes = state.tables.cells[cell];
@@ -307,9 +314,11 @@ namespace axiforge::solvers
   }
 
 
-  void FlowSolver::assemble()
+  void FlowSolver::assemble(const Norms &norms)
   {
     const Phase phase("assembly");
+    // Far from the solution the motion of an iterate tells nothing.
+    const bool moving = theta > 0 && norms.residual < near_solution && norms.divergence < near_solution;
     index_frames();
 
     system->clear();
@@ -318,24 +327,31 @@ namespace axiforge::solvers
     std::vector<double> matrix, rhs, wide;
     for (unsigned int cell = 0; cell < state.tables.cells.size(); ++cell)
       {
-        CellDofs x, r{};
+        CellDofs x, v, r{};
         load_cell(position, cell, x);
         cell_geometry(x, geometry);
         CellRecovery         &kept       = recovery[cell];
         const CellDivergence &divergence = kept.divergence;
-        FlowPoint            *p          = points.data() + n_points * cell;
-        cell_tangent(geometry, p, divergence, lambda, scene.flow.newton(), K);
+        std::copy_n(&divergence.gradient[0][0], n_pressure * n_dofs, &kept.flux_gradient[0][0]);
+        if (moving)
+          {
+            load_cell(velocity, cell, v);
+            add_flux_of_motion(geometry, v, theta * time_step, kept.flux_gradient);
+          }
+        FlowPoint *p = points.data() + n_points * cell;
+        cell_tangent(geometry, p, divergence, kept.flux_gradient, lambda, scene.flow.newton(), K);
 
-        // Residual with the pressure that this iteration will set, up to G dv: with the iterated
+        // Residual with the pressure that this iteration will set, up to J dv: with the iterated
         // penalty p + lambda M^-1 G v, with the plain one lambda M^-1 G v.
         add_internal_force(geometry, p, r);
         double next[n_pressure];
         solve_mass(divergence, kept.flux, next);
         for (unsigned int i = 0; i < n_pressure; ++i)
           {
-            next[i] = lambda * next[i] + (scene.flow.iterated() ? pressure[cell][i] : 0);
+            const double kept_pressure = scene.flow.iterated() ? pressure[cell][i] : 0;
             for (unsigned int j = 0; j < n_dofs; ++j)
-              r[j] += divergence.gradient[i][j] * next[i];
+              r[j] += divergence.gradient[i][j] * kept_pressure +
+                      kept.flux_gradient[i][j] * lambda * next[i];
           }
         for (const unsigned int e : cell_edges[cell])
           if (!friction->edges().empty() && friction->edges()[e].tool != no_tool)
@@ -485,7 +501,7 @@ namespace axiforge::solvers
           {
             flux[i] = kept.flux[i];
             for (unsigned int j = 0; j < n_dofs; ++j)
-              flux[i] += kept.divergence.gradient[i][j] * dv[j];
+              flux[i] += kept.flux_gradient[i][j] * dv[j];
           }
         solve_mass(kept.divergence, flux, correction);
         for (unsigned int i = 0; i < n_pressure; ++i)

@@ -196,6 +196,38 @@ namespace axiforge::solvers
   }
 
 
+  void add_flux_of_motion(const CellGeometry &geometry,
+                          const CellDofs     &v,
+                          const double        lag,
+                          double (&flux_gradient)[n_pressure][n_dofs])
+  {
+    for (unsigned int q = 0; q < n_points; ++q)
+      {
+        const double *gr = geometry.grad_r[q], *gz = geometry.grad_z[q],
+                     *h = geometry.shape_over_r[q];
+        double r_r = 0, r_z = 0, z_r = 0, z_z = 0, hoop = 0;
+        for (unsigned int a = 0; a < n_nodes; ++a)
+          {
+            r_r += gr[a] * v[2 * a];
+            r_z += gz[a] * v[2 * a];
+            z_r += gr[a] * v[2 * a + 1];
+            z_z += gz[a] * v[2 * a + 1];
+            hoop += h[a] * v[2 * a];
+          }
+        const double trace = r_r + z_z + hoop;
+        for (unsigned int i = 0; i < n_pressure; ++i)
+          {
+            const double weight = lag * geometry.weight[q] * geometry.pressure_basis[q][i];
+            for (unsigned int a = 0; a < n_nodes; ++a)
+              {
+                flux_gradient[i][2 * a] += weight * ((trace - r_r) * gr[a] - z_r * gz[a] + (trace - hoop) * h[a]);
+                flux_gradient[i][2 * a + 1] += weight * ((trace - z_z) * gz[a] - r_z * gr[a]);
+              }
+          }
+      }
+  }
+
+
   void solve_mass(const CellDivergence &divergence,
                   const double (&x)[n_pressure],
                   double (&y)[n_pressure])
@@ -233,6 +265,7 @@ namespace axiforge::solvers
   void cell_tangent(const CellGeometry   &geometry,
                     const FlowPoint      *points,
                     const CellDivergence &divergence,
+                    const double (&flux_gradient)[n_pressure][n_dofs],
                     const double          lambda,
                     const bool            dual,
                     double (&matrix)[n_dofs][n_dofs])
@@ -293,16 +326,16 @@ namespace axiforge::solvers
           matrix[2 * a + 1][2 * b + 1] = zz[a][b];
         }
 
-    // lambda G^T M^-1 G as three outer products of the rows of L^-1 G
+    // lambda J^T M^-1 J as three outer products of the rows of L^-1 J
     const auto  &L    = divergence.factor;
-    const auto  &G    = divergence.gradient;
+    const auto  &J    = flux_gradient;
     const double root = std::sqrt(lambda);
     double       y[n_pressure][n_dofs];
     for (unsigned int j = 0; j < n_dofs; ++j)
       {
-        y[0][j] = root * G[0][j] / L[0][0];
-        y[1][j] = (root * G[1][j] - L[1][0] * y[0][j]) / L[1][1];
-        y[2][j] = (root * G[2][j] - L[2][0] * y[0][j] - L[2][1] * y[1][j]) / L[2][2];
+        y[0][j] = root * J[0][j] / L[0][0];
+        y[1][j] = (root * J[1][j] - L[1][0] * y[0][j]) / L[1][1];
+        y[2][j] = (root * J[2][j] - L[2][0] * y[0][j] - L[2][1] * y[1][j]) / L[2][2];
       }
     for (unsigned int i = 0; i < n_dofs; ++i)
       for (unsigned int j = 0; j < n_dofs; ++j)

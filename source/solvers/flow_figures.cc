@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <deal.II/base/mpi.h>
 
+#include <axiforge/base/collective.h>
 #include <axiforge/base/features.h>
 #include <axiforge/base/phases.h>
 #include <axiforge/solvers/flow_solver.h>
@@ -237,10 +238,8 @@ namespace axiforge::solvers
         entry.contact_radius = MPI::max(radius[tool], state.communicator);
         record.power_tools += total * speed;
 
-        std::vector<std::array<double, 2>> all;
-        for (const auto &part : MPI::all_gather(state.communicator, slip[tool]))
-          all.insert(all.end(), part.begin(), part.end());
-        entry.neutral_radius = neutral_radius(all);
+        std::vector<std::array<double, 2>> all = gather_rows(state.communicator, slip[tool]);
+        entry.neutral_radius                   = neutral_radius(all);
       }
 
     // Friction traction of the nodes, from the forces of their edges.

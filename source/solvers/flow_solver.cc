@@ -222,7 +222,7 @@ namespace axiforge::solvers
           }
 
         timer.restart();
-        assemble();
+        assemble(norms);
         times.assembly += timer.wall_time();
         if (!solve_increment())
           {

@@ -86,6 +86,17 @@ namespace axiforge::solvers
 
   void cell_divergence(const CellGeometry &geometry, CellDivergence &divergence);
 
+  /**
+   * Adds lag d(G v)/dx, what the fluxes G v of the cell change by when its nodes move by lag times
+   * a change of the velocity, at rest of the pressure basis; equation (14a) of doc/theory.md.
+   * @param v node velocities [mm/s]
+   * @param lag theta dt [s]
+   */
+  void add_flux_of_motion(const CellGeometry &geometry,
+                          const CellDofs     &v,
+                          double              lag,
+                          double (&flux_gradient)[n_pressure][n_dofs]);
+
   /// y = M^-1 x with the factor.
   void solve_mass(const CellDivergence &divergence,
                   const double (&x)[n_pressure],
@@ -95,13 +106,15 @@ namespace axiforge::solvers
   void add_internal_force(const CellGeometry &geometry, const FlowPoint *points, CellDofs &force);
 
   /**
-   * Tangent of the primal-dual Newton method, K = int B^T D B + lambda G^T M^-1 G, full and
+   * Tangent of the primal-dual Newton method, K = int B^T D B + lambda J^T M^-1 J, full and
    * symmetric [n_dofs x n_dofs]; equation (12) of doc/theory.md.
+   * @param flux_gradient J: G, or G with the motion of the cell, equation (14a)
    * @param dual false: D = 2 mu I_dev only (the paper's direct iteration)
    */
   void cell_tangent(const CellGeometry   &geometry,
                     const FlowPoint      *points,
                     const CellDivergence &divergence,
+                    const double (&flux_gradient)[n_pressure][n_dofs],
                     double                lambda,
                     bool                  dual,
                     double (&matrix)[n_dofs][n_dofs]);

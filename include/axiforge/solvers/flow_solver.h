@@ -58,7 +58,8 @@ namespace axiforge::solvers
       double         interior_gain[2][n_outer]; ///< -K_ii^-1 K_io
       double         interior_step[2];          ///< -K_ii^-1 r_i
       CellDivergence divergence;
-      double         flux[n_pressure]; ///< G v
+      double         flux[n_pressure];                  ///< G v
+      double         flux_gradient[n_pressure][n_dofs]; ///< J, equation (14a) of doc/theory.md
     };
 
     /// Nodes of a cell that carry a hanging-node constraint, expressed in the system nodes.
@@ -93,7 +94,7 @@ namespace axiforge::solvers
     }
 
     void index_frames();
-    void assemble();
+    void assemble(const Norms &norms);
     void apply_frames(const std::vector<unsigned int> &nodes,
                       std::vector<double>             &matrix,
                       std::vector<double>             &rhs) const;
