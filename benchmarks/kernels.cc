@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Time of the kernels that a step consists of, with Google Benchmark; benchmarks/kernels.sh makes
+// Time of the kernels that a step consists of, with Google Benchmark; benchmarks/kernels.py makes
 // the table.
 #include <deal.II/base/parameter_handler.h>
 
@@ -39,156 +39,161 @@ namespace
   }
 
 
-  // Cells: a few hundred with different curved shapes, so that nothing is the same twice running.
+  // Groups of cells: a few hundred cells with different curved shapes, so that nothing is the same
+  // twice running. Times are those of a group, n_lanes cells.
 
-  constexpr unsigned int n_cells = 256;
-  constexpr double       penalty = 1e8;
+  constexpr unsigned int n_groups = 64;
+  constexpr double       penalty  = 1e8;
 
-  struct Cells
+  struct Group
   {
-    Cells()
-    {
-      using namespace solvers;
-      constexpr double node[n_nodes][2] = { { 0, 0 },  { 1, 0 },  { 0, 1 },  { 1, 1 },  { 0, .5 },
-                                            { 1, .5 }, { .5, 0 }, { .5, 1 }, { .5, .5 } };
-      for (unsigned int cell = 0; cell < n_cells; ++cell)
-        {
-          const double left = 1 + cell % 16, below = cell / 16;
+    solvers::GroupDofs       x, v;
+    solvers::GroupGeometry   geometry;
+    solvers::GroupDivergence divergence;
+    solvers::PointGroup      points;
+  };
+
+  std::vector<Group> make_groups()
+  {
+    using namespace solvers;
+    constexpr double node[n_nodes][2] = { { 0, 0 },  { 1, 0 },  { 0, 1 },  { 1, 1 },  { 0, .5 },
+                                          { 1, .5 }, { .5, 0 }, { .5, 1 }, { .5, .5 } };
+    std::vector<Group> groups(n_groups);
+    for (unsigned int g = 0; g < n_groups; ++g)
+      {
+        Group &group = groups[g];
+        for (unsigned int lane = 0; lane < n_lanes; ++lane)
           for (unsigned int a = 0; a < n_nodes; ++a)
             {
-              const double r = left + node[a][0], z = below + node[a][1];
-              x[cell][2 * a]     = r + 0.1 * std::sin(0.7 * z);
-              x[cell][2 * a + 1] = z + 0.1 * std::sin(0.5 * r);
-              v[cell][2 * a]     = 0.5 * r + 0.05 * std::sin(r + z);
-              v[cell][2 * a + 1] = -z + 0.05 * std::cos(r - z);
+              const unsigned int cell = n_lanes * g + lane;
+              const double       r = 1 + cell % 16 + node[a][0], z = cell / 16 + node[a][1];
+              group.x[2 * a][lane]     = r + 0.1 * std::sin(0.7 * z);
+              group.x[2 * a + 1][lane] = z + 0.1 * std::sin(0.5 * r);
+              group.v[2 * a][lane]     = 0.5 * r + 0.05 * std::sin(r + z);
+              group.v[2 * a + 1][lane] = -z + 0.05 * std::cos(r - z);
             }
-          cell_geometry(x[cell], geometry[cell]);
-          cell_divergence(geometry[cell], divergence[cell]);
-          for (unsigned int q = 0; q < n_points; ++q)
+        group_geometry(group.x, group.geometry);
+        group_divergence(group.geometry, group.v, group.divergence);
+        Lanes rates[n_points][4];
+        group_strain_rates(group.geometry, group.v, rates);
+        for (unsigned int q = 0; q < n_points; ++q)
+          for (unsigned int lane = 0; lane < n_lanes; ++lane)
             {
-              double rate[4];
-              strain_rate(geometry[cell], q, v[cell], rate);
-              FlowPoint   &p     = points[cell][q];
-              const double trace = (rate[0] + rate[1] + rate[2]) / 3;
+              PointGroup  &p     = group.points;
+              const double trace = (rates[q][0][lane] + rates[q][1][lane] + rates[q][2][lane]) / 3;
               double       norm  = 0;
               for (unsigned int c = 0; c < 4; ++c)
                 {
-                  p.strain_rate[c] = c < 3 ? rate[c] - trace : 0.5 * rate[3];
-                  norm += (c < 3 ? 1 : 2) * p.strain_rate[c] * p.strain_rate[c];
+                  const double e = c < 3 ? rates[q][c][lane] - trace : 0.5 * rates[q][3][lane];
+                  p.strain_rate[q][c][lane] = e;
+                  norm += (c < 3 ? 1 : 2) * e * e;
                 }
-              p.effective_rate = std::sqrt(2. / 3 * norm);
-              p.flow_stress    = 100;
-              p.strain         = 0.1;
-              p.viscosity      = p.flow_stress / (3 * p.effective_rate);
-              p.kappa          = 2. / 3 / (p.effective_rate * p.effective_rate);
+              const double effective    = std::sqrt(2. / 3 * norm);
+              p.flow_stress[q][lane]    = 100;
+              p.viscosity[q][lane]      = 100 / (3 * effective);
+              p.kappa[q][lane]          = 2. / 3 / (effective * effective);
               for (unsigned int c = 0; c < 4; ++c)
-                p.stress[c] = 2 * p.viscosity * p.strain_rate[c];
+                p.stress[q][c][lane] = 2 * p.viscosity[q][lane] * p.strain_rate[q][c][lane];
             }
-        }
-    }
+      }
+    return groups;
+  }
 
-    std::vector<solvers::CellDofs>                                 x{ n_cells }, v{ n_cells };
-    std::vector<solvers::CellGeometry>                             geometry{ n_cells };
-    std::vector<solvers::CellDivergence>                           divergence{ n_cells };
-    std::vector<std::array<solvers::FlowPoint, solvers::n_points>> points{ n_cells };
-  };
-
-  const Cells &cells()
+  const Group &group(const unsigned int g)
   {
-    static const Cells result;
-    return result;
+    static const std::vector<Group> groups = make_groups();
+    return groups[g % n_groups];
   }
 
 
-  void cell_geometry(benchmark::State &state)
+  void group_geometry(benchmark::State &state)
   {
-    const Cells          &all = cells();
-    solvers::CellGeometry geometry;
-    unsigned int          cell = 0;
+    solvers::GroupGeometry geometry;
+    unsigned int           g = 0;
     for (auto _ : state)
       {
-        solvers::cell_geometry(all.x[cell++ % n_cells], geometry);
+        solvers::group_geometry(group(g++).x, geometry);
         benchmark::DoNotOptimize(geometry);
       }
   }
-  BENCHMARK(cell_geometry);
+  BENCHMARK(group_geometry);
 
 
-  void cell_divergence(benchmark::State &state)
+  void group_divergence(benchmark::State &state)
   {
-    const Cells            &all = cells();
-    solvers::CellDivergence divergence;
-    unsigned int            cell = 0;
+    solvers::GroupDivergence divergence;
+    unsigned int             g = 0;
     for (auto _ : state)
       {
-        solvers::cell_divergence(all.geometry[cell++ % n_cells], divergence);
+        const Group &all = group(g++);
+        solvers::group_divergence(all.geometry, all.v, divergence);
         benchmark::DoNotOptimize(divergence);
       }
   }
-  BENCHMARK(cell_divergence);
+  BENCHMARK(group_divergence);
 
 
-  void cell_internal_force(benchmark::State &state)
+  void group_internal_force(benchmark::State &state)
   {
-    const Cells      &all  = cells();
-    unsigned int      cell = 0;
-    solvers::CellDofs force;
+    unsigned int       g = 0;
+    solvers::GroupDofs force;
     for (auto _ : state)
       {
-        const unsigned int c = cell++ % n_cells;
-        force.fill(0);
-        solvers::add_internal_force(all.geometry[c], all.points[c].data(), force);
+        const Group &all = group(g++);
+        solvers::group_internal_force(all.geometry, all.points, force);
         benchmark::DoNotOptimize(force);
       }
   }
-  BENCHMARK(cell_internal_force);
+  BENCHMARK(group_internal_force);
 
 
-  void cell_tangent(benchmark::State &state)
+  void group_flux_of_motion(benchmark::State &state)
   {
-    const Cells &all = cells();
-    double       K[solvers::n_dofs][solvers::n_dofs];
-    unsigned int cell = 0;
+    unsigned int   g                                                 = 0;
+    solvers::Lanes J[solvers::n_pressure][solvers::n_dofs] = {};
     for (auto _ : state)
       {
-        const unsigned int c = cell++ % n_cells;
-        solvers::cell_tangent(all.geometry[c], all.points[c].data(), all.divergence[c], all.divergence[c].gradient, penalty,
-                              true, K);
+        const Group &all = group(g++);
+        solvers::add_flux_of_motion(all.geometry, all.v, 1e-3, J);
+        benchmark::DoNotOptimize(J);
+      }
+  }
+  BENCHMARK(group_flux_of_motion);
+
+
+  void group_tangent(benchmark::State &state)
+  {
+    solvers::Lanes K[solvers::n_dofs][solvers::n_dofs];
+    unsigned int   g = 0;
+    for (auto _ : state)
+      {
+        const Group &all = group(g++);
+        solvers::group_tangent(all.geometry, all.points, all.divergence, all.divergence.gradient,
+                               penalty, true, K);
         benchmark::DoNotOptimize(K);
       }
   }
-  BENCHMARK(cell_tangent);
+  BENCHMARK(group_tangent);
 
 
   /// The tangent with its centre node condensed, as the flow solver assembles it.
-  void cell_tangent_condensed(benchmark::State &state)
+  void group_tangent_condensed(benchmark::State &state)
   {
-    using namespace solvers;
-    const Cells        &all = cells();
-    double              K[n_dofs][n_dofs], gain[2][n_outer];
-    std::vector<double> matrix(n_outer * n_outer);
-    unsigned int        cell = 0;
+    solvers::Lanes         K[solvers::n_dofs][solvers::n_dofs];
+    solvers::GroupDofs     residual = {};
+    solvers::GroupRecovery kept;
+    unsigned int           g = 0;
     for (auto _ : state)
       {
-        const unsigned int c = cell++ % n_cells;
-        solvers::cell_tangent(all.geometry[c], all.points[c].data(), all.divergence[c], all.divergence[c].gradient, penalty,
-                              true, K);
-        const double k00 = K[16][16], k01 = K[16][17], k11 = K[17][17];
-        const double determinant = k00 * k11 - k01 * k01;
-        for (unsigned int j = 0; j < n_outer; ++j)
-          {
-            gain[0][j] = -(k11 * K[16][j] - k01 * K[17][j]) / determinant;
-            gain[1][j] = -(k00 * K[17][j] - k01 * K[16][j]) / determinant;
-          }
-        for (unsigned int i = 0; i < n_outer; ++i)
-          for (unsigned int j = 0; j <= i; ++j)
-            matrix[i * n_outer + j] = matrix[j * n_outer + i] =
-                K[i][j] + K[i][16] * gain[0][j] + K[i][17] * gain[1][j];
-        benchmark::DoNotOptimize(matrix.data());
-        benchmark::ClobberMemory();
+        const Group &all = group(g++);
+        solvers::group_tangent(all.geometry, all.points, all.divergence, all.divergence.gradient,
+                               penalty, true, K);
+        solvers::condense_centre(K, residual, kept);
+        benchmark::DoNotOptimize(K);
+        benchmark::DoNotOptimize(kept);
       }
   }
-  BENCHMARK(cell_tangent_condensed);
+  BENCHMARK(group_tangent_condensed);
 
 
   // Material laws, at strains and rates that change from call to call.

@@ -59,7 +59,7 @@ namespace axiforge::meshing
 
   scene::WorkpieceOutline outline_of(const State &state)
   {
-      scene::WorkpieceOutline                           outline;
+    scene::WorkpieceOutline                           outline;
     std::map<dealii::types::boundary_id, std::string> name_of;
     for (const auto &[name, id] : state.boundary_ids)
       if (id != axis_id && id != symmetry_id && id != surface_id)

@@ -211,15 +211,16 @@ namespace axiforge::meshing
     unsigned int frame_flat_corners(NewMesh &made)
     {
       unsigned int n_framed = 0;
+      auto         cells    = cells_of_vertices(made.mesh);
       for (const auto &[v, angle] : boundary_angles(made))
         {
-          const auto cells = cells_of_vertices(made.mesh);
           if (cells[v].size() != 1 || angle < largest_angle)
             continue;
           const auto        &cell = made.mesh.cells[cells[v].front()];
           const unsigned int opposite =
               cell[3 - (std::find(cell.begin(), cell.end(), v) - cell.begin())];
           frame(made.mesh, on_boundary(made.mesh)[opposite] ? cells[v] : cells[opposite]);
+          cells = cells_of_vertices(made.mesh);
           ++n_framed;
         }
       return n_framed;

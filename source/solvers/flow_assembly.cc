@@ -28,6 +28,35 @@ namespace axiforge::solvers
   }
 
 
+  void FlowSolver::load_cells(const Field &field, const CellGroup &cells, GroupDofs &values) const
+  {
+    for (unsigned int lane = 0; lane < n_lanes; ++lane)
+      {
+        const auto &nodes = state.tables.cells[cells[lane]];
+        for (unsigned int a = 0; a < n_nodes; ++a)
+          for (unsigned int c = 0; c < 2; ++c)
+            values[2 * a + c][lane] = field.local_element(2 * nodes[a] + c);
+      }
+  }
+
+
+  void FlowSolver::load_points(const CellGroup &cells, PointGroup &group) const
+  {
+    const FlowPoint *of_cell[n_lanes];
+    for (unsigned int lane = 0; lane < n_lanes; ++lane)
+      of_cell[lane] = points.data() + n_points * cells[lane];
+    solvers::load_points(of_cell, group);
+  }
+
+
+  void FlowSolver::load_pressures(const CellGroup &cells, Lanes (&values)[n_pressure]) const
+  {
+    for (unsigned int lane = 0; lane < n_lanes; ++lane)
+      for (unsigned int i = 0; i < n_pressure; ++i)
+        values[i][lane] = pressure[cells[lane]][i];
+  }
+
+
   void
   FlowSolver::scatter_force(const unsigned int cell, const CellDofs &force, Field &target) const
   {
@@ -108,71 +137,84 @@ namespace axiforge::solvers
     scale             = 0;
     divergence_square = rate_square = 0;
 
-    double       worst      = 1;
-    unsigned int worst_cell = 0;
-    CellGeometry geometry;
-    for (unsigned int cell = 0; cell < state.tables.cells.size(); ++cell)
+    double        worst      = 1;
+    unsigned int  worst_cell = 0;
+    GroupGeometry geometry;
+    GroupDofs     x, v, force;
+    PointGroup    of_points;
+    for (unsigned int first = 0; first < state.tables.cells.size(); first += n_lanes)
       {
-        CellDofs x, v, force{}, magnitude;
-        load_cell(position, cell, x);
-        load_cell(velocity, cell, v);
-        cell_geometry(x, geometry);
-        if (!(geometry.smallest_jacobian > 0))
-          {
-            if (!(geometry.smallest_jacobian >= worst))
-              {
-                worst      = geometry.smallest_jacobian;
-                worst_cell = cell;
-              }
-            continue;
-          }
-        FlowPoint    *p      = points.data() + n_points * cell;
-        const double *strain = state.strain.begin() + state.tables.first_strain_dof[cell];
-        for (unsigned int q = 0; q < n_points; ++q)
-          {
-            double rate[4];
-            strain_rate(geometry, q, v, rate);
-            evaluate_point(p[q], rate, strain[q], move_dual);
-            rate_square += geometry.weight[q] * p[q].effective_rate * p[q].effective_rate;
-          }
-        add_internal_force(geometry, p, force);
+        const CellGroup cells(first, state.tables.cells.size());
+        load_cells(position, cells, x);
+        load_cells(velocity, cells, v);
+        group_geometry(x, geometry);
+        bool inverted = false;
+        for (unsigned int lane = 0; lane < cells.n; ++lane)
+          if (const double jacobian = geometry.smallest_jacobian[lane]; !(jacobian > 0))
+            {
+              inverted = true;
+              if (!(jacobian >= worst))
+                {
+                  worst      = jacobian;
+                  worst_cell = cells[lane];
+                }
+            }
+        if (inverted)
+          continue;
 
-        CellRecovery &kept = recovery[cell];
-        cell_divergence(geometry, kept.divergence);
-        double flux[n_pressure], projected[n_pressure];
-        for (unsigned int i = 0; i < n_pressure; ++i)
+        Lanes rates[n_points][4];
+        group_strain_rates(geometry, v, rates);
+        for (unsigned int lane = 0; lane < cells.n; ++lane)
           {
-            kept.flux[i] = 0;
-            for (unsigned int j = 0; j < n_dofs; ++j)
-              kept.flux[i] += kept.divergence.gradient[i][j] * v[j];
+            const unsigned int cell   = cells[lane];
+            FlowPoint         *p      = points.data() + n_points * cell;
+            const double      *strain = state.strain.begin() + state.tables.first_strain_dof[cell];
+            for (unsigned int q = 0; q < n_points; ++q)
+              {
+                const double rate[4] = { rates[q][0][lane], rates[q][1][lane], rates[q][2][lane],
+                                         rates[q][3][lane] };
+                evaluate_point(p[q], rate, strain[q], move_dual);
+                rate_square += geometry.weight[q][lane] * p[q].effective_rate * p[q].effective_rate;
+              }
           }
+        load_points(cells, of_points);
+        group_internal_force(geometry, of_points, force);
+
+        GroupDivergence &divergence = divergences[first / n_lanes];
+        group_divergence(geometry, v, divergence);
+        Lanes p[n_pressure], flux[n_pressure], projected[n_pressure];
         if (scene.flow.classical())
           {
-            solve_mass(kept.divergence, kept.flux, projected);
+            solve_mass(divergence, divergence.flux, projected);
             for (unsigned int i = 0; i < n_pressure; ++i)
-              pressure[cell][i] = lambda * projected[i];
+              for (unsigned int lane = 0; lane < cells.n; ++lane)
+                pressure[cells[lane]][i] = lambda * projected[i][lane];
           }
-        for (unsigned int j = 0; j < n_dofs; ++j)
-          {
-            double pressure_force = 0;
-            for (unsigned int i = 0; i < n_pressure; ++i)
-              pressure_force += kept.divergence.gradient[i][j] * pressure[cell][i];
-            magnitude[j] = std::abs(force[j]) + std::abs(pressure_force);
-            force[j] += pressure_force;
-          }
+        load_pressures(cells, p);
         for (unsigned int i = 0; i < n_pressure; ++i)
           {
-            flux[i] = kept.flux[i];
+            flux[i] = divergence.flux[i];
             if (!scene.flow.iterated()) // the plain penalty asks for div v = p / lambda
               for (unsigned int j = 0; j < n_pressure; ++j)
-                flux[i] -= kept.divergence.mass[i][j] * pressure[cell][j] / lambda;
+                flux[i] -= divergence.mass[i][j] * p[j] / lambda;
           }
-        solve_mass(kept.divergence, flux, projected);
-        for (unsigned int i = 0; i < n_pressure; ++i)
-          divergence_square += flux[i] * projected[i];
+        solve_mass(divergence, flux, projected);
+        GroupDofs of_pressure = {};
+        add_pressure_force(divergence.gradient, p, of_pressure);
 
-        scatter_force(cell, force, internal);
-        scatter_force(cell, magnitude, scale);
+        for (unsigned int lane = 0; lane < cells.n; ++lane)
+          {
+            CellDofs total, magnitude;
+            for (unsigned int j = 0; j < n_dofs; ++j)
+              {
+                magnitude[j] = std::abs(force[j][lane]) + std::abs(of_pressure[j][lane]);
+                total[j]     = force[j][lane] + of_pressure[j][lane];
+              }
+            for (unsigned int i = 0; i < n_pressure; ++i)
+              divergence_square += flux[i][lane] * projected[i][lane];
+            scatter_force(cells[lane], total, internal);
+            scatter_force(cells[lane], magnitude, scale);
+          }
       }
     internal.compress(dealii::VectorOperation::add);
     scale.compress(dealii::VectorOperation::add);
@@ -318,114 +360,133 @@ namespace axiforge::solvers
   {
     const Phase phase("assembly");
     // Far from the solution the motion of an iterate tells nothing.
-    const bool moving = theta > 0 && norms.residual < near_solution && norms.divergence < near_solution;
+    const bool moving =
+        theta > 0 && norms.residual < near_solution && norms.divergence < near_solution;
     index_frames();
 
     system->clear();
-    CellGeometry        geometry;
-    double              K[n_dofs][n_dofs];
-    std::vector<double> matrix, rhs, wide;
-    for (unsigned int cell = 0; cell < state.tables.cells.size(); ++cell)
+    GroupGeometry geometry;
+    GroupDofs     x, v, r;
+    PointGroup    of_points;
+    Lanes         K[n_dofs][n_dofs];
+    for (unsigned int first = 0; first < state.tables.cells.size(); first += n_lanes)
       {
-        CellDofs x, v, r{};
-        load_cell(position, cell, x);
-        cell_geometry(x, geometry);
-        CellRecovery         &kept       = recovery[cell];
-        const CellDivergence &divergence = kept.divergence;
-        std::copy_n(&divergence.gradient[0][0], n_pressure * n_dofs, &kept.flux_gradient[0][0]);
+        const CellGroup cells(first, state.tables.cells.size());
+        load_cells(position, cells, x);
+        group_geometry(x, geometry);
+        load_points(cells, of_points);
+        const GroupDivergence &divergence = divergences[first / n_lanes];
+        GroupRecovery         &kept       = recovery[first / n_lanes];
+        for (unsigned int i = 0; i < n_pressure; ++i)
+          for (unsigned int j = 0; j < n_dofs; ++j)
+            kept.flux_gradient[i][j] = divergence.gradient[i][j];
         if (moving)
           {
-            load_cell(velocity, cell, v);
+            load_cells(velocity, cells, v);
             add_flux_of_motion(geometry, v, theta * time_step, kept.flux_gradient);
           }
-        FlowPoint *p = points.data() + n_points * cell;
-        cell_tangent(geometry, p, divergence, kept.flux_gradient, lambda, scene.flow.newton(), K);
+        group_tangent(geometry, of_points, divergence, kept.flux_gradient, lambda,
+                      scene.flow.newton(), K);
 
         // Residual with the pressure that this iteration will set, up to J dv: with the iterated
         // penalty p + lambda M^-1 G v, with the plain one lambda M^-1 G v.
-        add_internal_force(geometry, p, r);
-        double next[n_pressure];
-        solve_mass(divergence, kept.flux, next);
+        group_internal_force(geometry, of_points, r);
+        Lanes next[n_pressure], now[n_pressure];
+        solve_mass(divergence, divergence.flux, next);
+        load_pressures(cells, now);
         for (unsigned int i = 0; i < n_pressure; ++i)
           {
-            const double kept_pressure = scene.flow.iterated() ? pressure[cell][i] : 0;
-            for (unsigned int j = 0; j < n_dofs; ++j)
-              r[j] += divergence.gradient[i][j] * kept_pressure +
-                      kept.flux_gradient[i][j] * lambda * next[i];
+            next[i] *= lambda;
+            if (!scene.flow.iterated())
+              now[i] = Lanes{};
           }
-        for (const unsigned int e : cell_edges[cell])
-          if (!friction->edges().empty() && friction->edges()[e].tool != no_tool)
-            {
-              const InterfaceFriction::Edge &edge = friction->edges()[e];
-              const auto &local = InterfaceFriction::side_nodes[state.tables.edges[e].side];
-              for (unsigned int a = 0; a < 3; ++a)
-                for (unsigned int c = 0; c < 2; ++c)
-                  {
-                    r[2 * local[a] + c] += edge.force[a] * edge.tangent[a][c];
-                    for (unsigned int b = 0; b < 3; ++b)
-                      for (unsigned int d = 0; d < 2; ++d)
-                        K[2 * local[a] + c][2 * local[b] + d] +=
-                            edge.tangent[a][c] * edge.matrix[a][b] * edge.tangent[b][d];
-                  }
-            }
-        if (!cell_external.empty())
-          for (unsigned int j = 0; j < n_dofs; ++j)
-            r[j] -= cell_external[cell][j];
-
-        // Condense the centre node.
-        const double k00 = K[16][16], k01 = K[16][17], k11 = K[17][17];
-        const double determinant = k00 * k11 - k01 * k01;
-        for (unsigned int j = 0; j < n_outer; ++j)
+        add_pressure_force(divergence.gradient, now, r);
+        add_pressure_force(kept.flux_gradient, next, r);
+        for (unsigned int lane = 0; lane < cells.n; ++lane)
           {
-            kept.interior_gain[0][j] = -(k11 * K[16][j] - k01 * K[17][j]) / determinant;
-            kept.interior_gain[1][j] = -(k00 * K[17][j] - k01 * K[16][j]) / determinant;
+            add_friction_of_cell(cells[lane], lane, K, r);
+            if (!cell_external.empty())
+              for (unsigned int j = 0; j < n_dofs; ++j)
+                r[j][lane] -= cell_external[cells[lane]][j];
           }
-        kept.interior_step[0] = -(k11 * r[16] - k01 * r[17]) / determinant;
-        kept.interior_step[1] = -(k00 * r[17] - k01 * r[16]) / determinant;
-
-        const unsigned int m = system_nodes[cell].size(), n = 2 * m;
-        matrix.resize(n * n);
-        rhs.resize(n);
-        const auto condensed = [&](const unsigned int i, const unsigned int j) {
-          return K[i][j] + K[i][16] * kept.interior_gain[0][j] +
-                 K[i][17] * kept.interior_gain[1][j];
-        };
-        const auto condensed_rhs = [&](const unsigned int i) {
-          return -(r[i] + K[i][16] * kept.interior_step[0] + K[i][17] * kept.interior_step[1]);
-        };
-        if (hanging_cell[cell] < 0)
-          for (unsigned int i = 0; i < n; ++i)
-            {
-              rhs[i] = condensed_rhs(i);
-              for (unsigned int j = 0; j <= i; ++j)
-                matrix[i * n + j] = matrix[j * n + i] = condensed(i, j);
-            }
-        else
-          {
-            // C^T K C with the weights of the hanging nodes, component by component
-            const HangingCell &expanded = hanging[hanging_cell[cell]];
-            wide.assign(n_outer * n, 0);
-            for (unsigned int i = 0; i < n_outer; ++i)
-              for (unsigned int b = 0; b < 8; ++b)
-                for (unsigned int j = 0; j < m; ++j)
-                  if (const double w = expanded.weights[b * m + j]; w != 0)
-                    for (unsigned int c = 0; c < 2; ++c)
-                      wide[i * n + 2 * j + c] += w * condensed(i, 2 * b + c);
-            std::fill(matrix.begin(), matrix.end(), 0);
-            std::fill(rhs.begin(), rhs.end(), 0);
-            for (unsigned int a = 0; a < 8; ++a)
-              for (unsigned int i = 0; i < m; ++i)
-                if (const double w = expanded.weights[a * m + i]; w != 0)
-                  for (unsigned int c = 0; c < 2; ++c)
-                    {
-                      rhs[2 * i + c] += w * condensed_rhs(2 * a + c);
-                      for (unsigned int j = 0; j < n; ++j)
-                        matrix[(2 * i + c) * n + j] += w * wide[(2 * a + c) * n + j];
-                    }
-          }
-        apply_frames(system_nodes[cell], matrix, rhs);
-        system->add(cell, matrix.data(), rhs.data());
+        condense_centre(K, r, kept);
+        for (unsigned int lane = 0; lane < cells.n; ++lane)
+          add_to_system(cells[lane], lane, K, r);
       }
+  }
+
+
+  void FlowSolver::add_friction_of_cell(const unsigned int cell,
+                                        const unsigned int lane,
+                                        Lanes (&K)[n_dofs][n_dofs],
+                                        GroupDofs &r) const
+  {
+    if (friction->edges().empty())
+      return;
+    for (const unsigned int e : cell_edges[cell])
+      {
+        const InterfaceFriction::Edge &edge = friction->edges()[e];
+        if (edge.tool == no_tool)
+          continue;
+        const auto &local = InterfaceFriction::side_nodes[state.tables.edges[e].side];
+        for (unsigned int a = 0; a < 3; ++a)
+          for (unsigned int c = 0; c < 2; ++c)
+            {
+              const unsigned int i = 2 * local[a] + c;
+              r[i][lane] += edge.force[a] * edge.tangent[a][c];
+              for (unsigned int b = 0; b < 3; ++b)
+                for (unsigned int d = 0; d < 2; ++d)
+                  if (const unsigned int j = 2 * local[b] + d; j <= i)
+                    K[i][j][lane] += edge.tangent[a][c] * edge.matrix[a][b] * edge.tangent[b][d];
+            }
+      }
+  }
+
+
+  void FlowSolver::add_to_system(const unsigned int cell,
+                                 const unsigned int lane,
+                                 const Lanes (&K)[n_dofs][n_dofs],
+                                 const GroupDofs &r)
+  {
+    // Written in full: conditions of nodes turn rows and columns.
+    const auto condensed = [&](const unsigned int i, const unsigned int j) {
+      return i >= j ? K[i][j][lane] : K[j][i][lane];
+    };
+    const unsigned int m = system_nodes[cell].size(), n = 2 * m;
+    cell_matrix.resize(n * n);
+    cell_rhs.resize(n);
+    if (hanging_cell[cell] < 0)
+      for (unsigned int i = 0; i < n; ++i)
+        {
+          cell_rhs[i] = -r[i][lane];
+          for (unsigned int j = 0; j <= i; ++j)
+            cell_matrix[i * n + j] = cell_matrix[j * n + i] = condensed(i, j);
+        }
+    else
+      {
+        // C^T K C with the weights of the hanging nodes, component by component
+        const HangingCell &expanded = hanging[hanging_cell[cell]];
+        cell_wide.assign(n_outer * n, 0);
+        for (unsigned int i = 0; i < n_outer; ++i)
+          for (unsigned int b = 0; b < 8; ++b)
+            for (unsigned int j = 0; j < m; ++j)
+              if (const double w = expanded.weights[b * m + j]; w != 0)
+                for (unsigned int c = 0; c < 2; ++c)
+                  cell_wide[i * n + 2 * j + c] += w * condensed(i, 2 * b + c);
+        std::fill(cell_matrix.begin(), cell_matrix.end(), 0);
+        std::fill(cell_rhs.begin(), cell_rhs.end(), 0);
+        for (unsigned int a = 0; a < 8; ++a)
+          for (unsigned int i = 0; i < m; ++i)
+            if (const double w = expanded.weights[a * m + i]; w != 0)
+              for (unsigned int c = 0; c < 2; ++c)
+                {
+                  cell_rhs[2 * i + c] += w * -r[2 * a + c][lane];
+                  for (unsigned int j = 0; j < n; ++j)
+                    cell_matrix[(2 * i + c) * n + j] += w * cell_wide[(2 * a + c) * n + j];
+                }
+      }
+    apply_frames(system_nodes[cell], cell_matrix, cell_rhs);
+    system->add(cell, cell_matrix.data(), cell_rhs.data());
   }
 
 
@@ -483,30 +544,26 @@ namespace axiforge::solvers
   void FlowSolver::recover()
   {
     const Phase phase("pressure and cell centres");
-    for (unsigned int cell = 0; cell < state.tables.cells.size(); ++cell)
+    GroupDofs   dv;
+    for (unsigned int first = 0; first < state.tables.cells.size(); first += n_lanes)
       {
-        const CellRecovery &kept = recovery[cell];
-        CellDofs            dv;
-        load_cell(increment, cell, dv);
-        for (unsigned int c = 0; c < 2; ++c)
-          {
-            double step = kept.interior_step[c];
-            for (unsigned int j = 0; j < n_outer; ++j)
-              step += kept.interior_gain[c][j] * dv[j];
-            dv[16 + c]                                                   = step;
-            increment.local_element(2 * state.tables.cells[cell][8] + c) = step;
-          }
-        double flux[n_pressure], correction[n_pressure];
+        const CellGroup        cells(first, state.tables.cells.size());
+        const GroupDivergence &divergence = divergences[first / n_lanes];
+        load_cells(increment, cells, dv);
+        Lanes flux[n_pressure], correction[n_pressure];
+        recover_centre(recovery[first / n_lanes], dv, flux);
         for (unsigned int i = 0; i < n_pressure; ++i)
+          flux[i] += divergence.flux[i];
+        solve_mass(divergence, flux, correction);
+        for (unsigned int lane = 0; lane < cells.n; ++lane)
           {
-            flux[i] = kept.flux[i];
-            for (unsigned int j = 0; j < n_dofs; ++j)
-              flux[i] += kept.flux_gradient[i][j] * dv[j];
+            const unsigned int cell = cells[lane];
+            for (unsigned int c = 0; c < 2; ++c)
+              increment.local_element(2 * state.tables.cells[cell][8] + c) = dv[n_outer + c][lane];
+            for (unsigned int i = 0; i < n_pressure; ++i)
+              pressure[cell][i] =
+                  lambda * correction[i][lane] + (scene.flow.iterated() ? pressure[cell][i] : 0);
           }
-        solve_mass(kept.divergence, flux, correction);
-        for (unsigned int i = 0; i < n_pressure; ++i)
-          pressure[cell][i] =
-              lambda * correction[i] + (scene.flow.iterated() ? pressure[cell][i] : 0);
       }
     friction->update_dual(increment);
     for (unsigned int i = 0; i < 2 * state.tables.n_owned_nodes; ++i)

@@ -158,7 +158,7 @@ namespace axiforge::solvers
             largest = std::max(largest, point.effective_rate);
           }
         for (unsigned int i = 0; i < n_pressure; ++i)
-          volume += pressure[cell][i] * recovery[cell].flux[i];
+          volume += pressure[cell][i] * divergences[cell / n_lanes].flux[i][cell % n_lanes];
       }
     double slip = 0;
     for (const InterfaceFriction::Edge &edge : friction->edges())

@@ -49,7 +49,8 @@ namespace axiforge::solvers
     const std::size_t n_cells = state.tables.cells.size();
     points.resize(n_points * n_cells);
     pressure.resize(n_cells);
-    recovery.resize(n_cells);
+    divergences.resize((n_cells + n_lanes - 1) / n_lanes);
+    recovery.resize(divergences.size());
     frame_of_node.assign(state.tables.n_nodes, -1);
     cell_edges.resize(n_cells);
     for (unsigned int e = 0; e < state.tables.edges.size(); ++e)

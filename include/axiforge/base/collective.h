@@ -21,8 +21,8 @@ namespace axiforge
   /// They may be long and hold any bytes. Collective.
   std::vector<std::string> gather_on_first_rank(MPI_Comm communicator, const std::string &mine);
 
-  /// The rows of all ranks on all of them, one rank after the other. (deal.II's all_gather compresses
-  /// what it sends, which takes longer than all else here.) Collective.
+  /// The rows of all ranks on all of them, one rank after the other. (deal.II's all_gather
+  /// compresses what it sends, which takes longer than all else here.) Collective.
   template <typename Row>
   std::vector<Row> gather_rows(const MPI_Comm communicator, const std::vector<Row> &mine)
   {

@@ -52,14 +52,24 @@ namespace axiforge::solvers
     }
 
   private:
-    /// What a cell keeps between assembly and the recovery of its condensed unknowns.
-    struct CellRecovery
+    /// The cells that are evaluated side by side. A group with fewer than n_lanes of them has the
+    /// last one several times, and only the first n count.
+    struct CellGroup
     {
-      double         interior_gain[2][n_outer]; ///< -K_ii^-1 K_io
-      double         interior_step[2];          ///< -K_ii^-1 r_i
-      CellDivergence divergence;
-      double         flux[n_pressure];                  ///< G v
-      double         flux_gradient[n_pressure][n_dofs]; ///< J, equation (14a) of doc/theory.md
+      std::array<unsigned int, n_lanes> cells;
+      unsigned int                      n;
+
+      CellGroup(const unsigned int first, const unsigned int n_cells)
+          : n(std::min(n_lanes, n_cells - first))
+      {
+        for (unsigned int lane = 0; lane < n_lanes; ++lane)
+          cells[lane] = first + std::min(lane, n - 1);
+      }
+
+      unsigned int operator[](const unsigned int lane) const
+      {
+        return cells[lane];
+      }
     };
 
     /// Nodes of a cell that carry a hanging-node constraint, expressed in the system nodes.
@@ -76,6 +86,9 @@ namespace axiforge::solvers
 
     void make_system();
     void load_cell(const Field &field, unsigned int cell, CellDofs &values) const;
+    void load_cells(const Field &field, const CellGroup &cells, GroupDofs &values) const;
+    void load_points(const CellGroup &cells, PointGroup &group) const;
+    void load_pressures(const CellGroup &cells, Lanes (&values)[n_pressure]) const;
     bool evaluate_cells(bool move_dual);
     void
     evaluate_point(FlowPoint &point, const double (&rate)[4], double strain, bool move_dual) const;
@@ -95,6 +108,14 @@ namespace axiforge::solvers
 
     void index_frames();
     void assemble(const Norms &norms);
+    void add_friction_of_cell(unsigned int cell,
+                              unsigned int lane,
+                              Lanes (&K)[n_dofs][n_dofs],
+                              GroupDofs &r) const;
+    void add_to_system(unsigned int cell,
+                       unsigned int lane,
+                       const Lanes (&K)[n_dofs][n_dofs],
+                       const GroupDofs &r);
     void apply_frames(const std::vector<unsigned int> &nodes,
                       std::vector<double>             &matrix,
                       std::vector<double>             &rhs) const;
@@ -128,7 +149,9 @@ namespace axiforge::solvers
     Field                              internal, external, friction_force, unbalanced, scale;
     std::vector<FlowPoint>             points;
     std::vector<std::array<double, n_pressure>> pressure;
-    std::vector<CellRecovery>                   recovery;
+    std::vector<GroupDivergence>                divergences; ///< of each group of cells
+    std::vector<GroupRecovery>                  recovery;    ///< of each group of cells
+    std::vector<double>    cell_matrix, cell_rhs, cell_wide; ///< room for add_to_system
     std::vector<CellDofs>  cell_external; ///< empty: no pressure boundary and no body force
     std::vector<NodeFrame> frames;
     std::vector<int>       frame_of_node;                  ///< row in frames, -1: none
