@@ -16,7 +16,7 @@ namespace
   constexpr double radius = 25, half_height = 25, speed = 0.25; // mm, mm, mm/s
 
   const Entries tight = { "Process/End time = 1e9", "Time stepping/Time step = 1",
-                          "Flow solver/Tolerance = 1e-11" };
+                          "Flow solver/Tolerance = 1e-12" };
 
   Entries upper_platen(const Entries &friction = {})
   {

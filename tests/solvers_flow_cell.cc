@@ -28,7 +28,7 @@ namespace
 
     Group()
     {
-      const double node[n_nodes][2] = { { 0, 0 }, { 1, 0 },   { 0, 1 },   { 1, 1 },    { 0, 0.5 },
+      const double node[n_nodes][2] = { { 0, 0 },   { 1, 0 },   { 0, 1 },   { 1, 1 },    { 0, 0.5 },
                                         { 1, 0.5 }, { 0.5, 0 }, { 0.5, 1 }, { 0.5, 0.5 } };
       for (unsigned int lane = 0; lane < n_lanes; ++lane)
         for (unsigned int a = 0; a < n_nodes; ++a)
@@ -52,7 +52,7 @@ namespace
       for (unsigned int q = 0; q < n_points; ++q)
         for (unsigned int lane = 0; lane < n_lanes; ++lane)
           {
-            const double trace = (rate[q][0][lane] + rate[q][1][lane] + rate[q][2][lane]) / 3;
+            const double trace  = (rate[q][0][lane] + rate[q][1][lane] + rate[q][2][lane]) / 3;
             double       square = smallest_rate * smallest_rate;
             for (unsigned int c = 0; c < 4; ++c)
               {

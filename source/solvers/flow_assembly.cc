@@ -359,9 +359,10 @@ namespace axiforge::solvers
   void FlowSolver::assemble(const Norms &norms)
   {
     const Phase phase("assembly");
-    // Far from the solution the motion of an iterate tells nothing.
-    const bool moving =
-        theta > 0 && norms.residual < near_solution && norms.divergence < near_solution;
+    // Far from the solution, and in a first step, which starts from nothing, the motion of an
+    // iterate tells nothing.
+    const bool moving = theta > 0 && state.step > 0 && norms.residual < near_solution &&
+                        norms.divergence < near_solution;
     index_frames();
 
     system->clear();
@@ -391,17 +392,17 @@ namespace axiforge::solvers
         // Residual with the pressure that this iteration will set, up to J dv: with the iterated
         // penalty p + lambda M^-1 G v, with the plain one lambda M^-1 G v.
         group_internal_force(geometry, of_points, r);
-        Lanes next[n_pressure], now[n_pressure];
-        solve_mass(divergence, divergence.flux, next);
+        Lanes now[n_pressure], step[n_pressure];
         load_pressures(cells, now);
+        solve_mass(divergence, divergence.flux, step);
         for (unsigned int i = 0; i < n_pressure; ++i)
           {
-            next[i] *= lambda;
+            step[i] *= lambda;
             if (!scene.flow.iterated())
-              now[i] = Lanes{};
+              step[i] -= now[i];
           }
         add_pressure_force(divergence.gradient, now, r);
-        add_pressure_force(kept.flux_gradient, next, r);
+        add_pressure_force(kept.flux_gradient, step, r);
         for (unsigned int lane = 0; lane < cells.n; ++lane)
           {
             add_friction_of_cell(cells[lane], lane, K, r);
