@@ -393,9 +393,10 @@ namespace axiforge::meshing
           marking.coarsen_fraction);
     const std::vector<unsigned int> rows    = rows_of_cells(state);
     const bool                      is_full = state.tables.n_global_cells >= limits.most_cells;
+    const int deepest = std::max(limits.largest_level, limits.largest_by_error);
     for (const auto &cell : state.triangulation.active_cell_iterators())
       if (cell->is_locally_owned() &&
-          (is_full || cell->level() >= static_cast<int>(limits.largest_level) ||
+          (is_full || cell->level() >= deepest ||
            shorter_diagonal(state, rows[cell->active_cell_index()]) < 2 * limits.smallest_size))
         cell->clear_refine_flag();
     mark_by_geometry(scene, state);

@@ -174,7 +174,7 @@ namespace axiforge::scene
     prm.add_parameter(
         "Largest level", largest_level,
         "How many times a cell of the file's mesh may be divided, the initial refinement "
-        "levels counted.",
+        "levels counted. With a target accuracy errors may divide them 10 times.",
         Patterns::Integer(0, 20));
     prm.add_parameter("Most cells", most_cells, "No cell is divided when there are so many.",
                       Patterns::Integer(1));

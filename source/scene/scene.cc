@@ -344,9 +344,11 @@ namespace axiforge::scene
     refinement.enabled |= accuracy.driven();
     if (accuracy.driven())
       {
-        // Small errors need levels that few would think of; the other limits hold as given.
-        refinement.largest_level = std::max(refinement.largest_level, 10u);
-        flow.tolerance           = std::min(flow.tolerance, 0.01 * accuracy.target);
+        // Small errors need levels that few would think of; the other limits hold as given, and
+        // where the geometry divides cells so does the level: surface that folds over is curved
+        // without bound.
+        refinement.largest_by_error = 10;
+        flow.tolerance              = std::min(flow.tolerance, 0.01 * accuracy.target);
       }
     for (const RegionParameters &region : parameters.regions)
       regions.push_back(make_region(region, tools, refinement.enabled));

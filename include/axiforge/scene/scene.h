@@ -106,6 +106,7 @@ namespace axiforge::scene
     double       refine_fraction     = 0.3;
     double       coarsen_fraction    = 0.02;
     unsigned int largest_level       = 3;
+    unsigned int largest_by_error    = 0; ///< level to which errors may divide cells, if larger
     unsigned int most_cells          = 20000;
     double       smallest_size       = 0;
     double       largest_chord_error = 0.01; ///< over the length of the edge
