@@ -206,7 +206,7 @@ def main():
             "of one Newton iteration, analysis (order of the rows, pattern) comes once for each mesh. Memory is the peak of the "
             "process.\n\nOne rank, CHOLMOD, CPU seconds:\n\n"
             + table([row for row in rows if row["ranks"] == 1], one)
-            + "\nTwo ranks, MUMPS, wall seconds of the first rank, memory of the larger one:\n\n"
+            + "\nTwo ranks, CHOLMOD on the first, wall seconds of that rank, memory of the larger one:\n\n"
             + table([row for row in rows if row["ranks"] == 2], dict(columns, **{"failed": ("failed", "{}")})) + "\n" + verdicts(rows, rates))
     write_markdown("growth", "Growth with the mesh", arguments.program.resolve(), body)
     picture(rows)

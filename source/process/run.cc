@@ -258,12 +258,6 @@ namespace axiforge::process
     meshing::WorkpieceMesh        mesh =
         meshing::read_workpiece(start.workpiece, "Workpiece", start.directory);
     meshing::share_from_first_rank(mesh, communicator);
-    const unsigned int n_ranks = dealii::Utilities::MPI::n_mpi_processes(communicator);
-    for (const scene::SceneParameters &operation : operations)
-      if (operation.flow.linear_solver == "cholmod" && n_ranks > 1)
-        throw InputError::entry(
-            "Flow solver/Linear solver", "cholmod", "CHOLMOD works on one rank only",
-            "'automatic' or 'mumps' on several ranks", "Or start the program without mpirun");
     // A run makes the scene before it writes anything; a chain has written its folder by then.
     if (!start.placement.any() && (options.validate || !start.operation.empty()))
       scene::in_operation(start.operation,

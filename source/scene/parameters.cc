@@ -134,8 +134,8 @@ namespace axiforge::scene
         Patterns::Integer(1));
     prm.add_parameter(
         "Linear solver", linear_solver,
-        "'cholmod': supernodal Cholesky, one rank only. 'mumps': through Trilinos, any "
-        "number of ranks. 'automatic': cholmod on one rank, mumps on several.",
+        "'cholmod': supernodal Cholesky on the first rank, for all. 'mumps': through Trilinos, on "
+        "all ranks. 'automatic': cholmod; mumps on several ranks beyond 3 million unknowns.",
         Patterns::Selection("automatic|cholmod|mumps"));
     prm.add_parameter("Ordering", ordering,
                       "Fill-reducing ordering of cholmod. 'automatic': amd below 10,000 unknowns, "

@@ -108,10 +108,7 @@ namespace axiforge::solvers
         hanging.push_back(expanded);
       }
 
-    std::string kind = scene.flow.linear_solver;
-    if (kind == "automatic")
-      kind = MPI::n_mpi_processes(state.communicator) > 1 ? "mumps" : "cholmod";
-    system = make_linear_system(kind, scene.flow.ordering, state, system_nodes);
+    system = make_linear_system(scene.flow.linear_solver, scene.flow.ordering, state, system_nodes);
   }
 
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <numeric>
+
+#include <deal.II/base/mpi.h>
 #include <deal.II/base/timer.h>
 
-#include <Eigen/CholmodSupport>
-#include <Eigen/SparseCore>
-
-#include <axiforge/base/errors.h>
+#include <axiforge/base/collective.h>
 #include <axiforge/base/phases.h>
-#include <axiforge/solvers/condition.h>
+#include <axiforge/solvers/cholmod_system.h>
 #include <axiforge/solvers/linear_system.h>
 
 namespace axiforge::solvers
@@ -15,80 +15,113 @@ namespace axiforge::solvers
 
   namespace
   {
-    using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
+    namespace MPI = dealii::Utilities::MPI;
 
-    /// CHOLMOD's supernodal Cholesky factorisation, assembled straight into its storage.
-    class CholmodSystem : public LinearSystem
+    /**
+     * CHOLMOD on the first rank. The others keep the matrices of their cells (lower triangle, then
+     * right-hand side), send them there and get their part of the solution back.
+     */
+    class FirstRankSystem : public LinearSystem
     {
     public:
-      CholmodSystem(const std::string &ordering, const State &state, const SystemNodes &nodes)
+      FirstRankSystem(const std::string &ordering, const State &state, const SystemNodes &nodes)
+          : communicator(state.communicator)
+          , is_first(MPI::this_mpi_process(communicator) == 0)
+          , is_alone(MPI::n_mpi_processes(communicator) == 1)
       {
         const Phase   phase("analysis");
         dealii::Timer timer;
-        number_rows(ordering, state, nodes);
-        make_pattern(nodes);
+        const auto   &partitioner = *state.velocity.get_partitioner();
 
-        // The rows stand in their final order: CHOLMOD then factorises the matrix as it is, without
-        // a permuted copy each time.
-        cholmod_common &common    = solver.cholmod();
-        common.nmethods           = 1;
-        common.method[0].ordering = CHOLMOD_NATURAL;
-        common.postorder          = 0;
-        common.print = 0; // a matrix that is not positive definite is the caller's to report
-        // Supernodes are merged more readily than by default (4, 16, 48; 0.8, 0.1, 0.05): with up
-        // to so many columns, or as long as this share of zeros is not passed. A fifth less time
-        // for 5,000 to 40,000 unknowns.
-        constexpr unsigned int columns[3] = { 16, 48, 128 };
-        constexpr double       zeros[3]   = { 0.9, 0.3, 0.1 };
-        std::copy_n(columns, 3, common.nrelax);
-        std::copy_n(zeros, 3, common.zrelax);
-        solver.analyzePattern(matrix);
+        std::vector<unsigned int> sizes, numbers; // of the nodes of all cells, in global numbers
+        for (const auto &cell : nodes)
+          {
+            sizes.push_back(cell.size());
+            for (const unsigned int node : cell)
+              numbers.push_back(partitioner.local_to_global(2 * node) / 2);
+          }
+        rows_of_cell = gather_rows(communicator, sizes);
+        numbers      = gather_rows(communicator, numbers);
+        n_own_cells  = nodes.size();
+        CholmodSystem::Nodes all(rows_of_cell.size());
+        for (unsigned int cell = 0, next = 0; cell < all.size(); ++cell)
+          {
+            all[cell].assign(numbers.begin() + next, numbers.begin() + next + rows_of_cell[cell]);
+            next += rows_of_cell[cell];
+            rows_of_cell[cell] *= 2;
+          }
+        const unsigned int n_unknowns = state.n_unknowns();
+        on_first_rank(communicator, [&] {
+          solver = std::make_unique<CholmodSystem>(ordering, n_unknowns / 2, all);
+          n_rows = solver->rows();
+        });
+        n_rows = MPI::max(n_rows, communicator);
+
+        // What goes to and fro between the first rank and the others.
+        const auto own = [&](const unsigned int n) {
+          return gather_rows(communicator, std::vector<int>{ static_cast<int>(n) });
+        };
+        unknowns_of_rank = own(partitioner.locally_owned_size());
+        first_unknown    = begins(unknowns_of_rank);
+        solution_of_all.resize(is_first ? n_unknowns : 0);
+        solution_of_rank.resize(partitioner.locally_owned_size());
+        const unsigned int first_cell =
+            begins(own(n_own_cells))[MPI::this_mpi_process(communicator)];
+        if (!is_first)
+          rows_of_cell = { rows_of_cell.begin() + first_cell,
+                           rows_of_cell.begin() + first_cell + n_own_cells };
+        unsigned int n_entries = 0;
+        for (const unsigned int n : rows_of_cell)
+          {
+            first_entry.push_back(n_entries);
+            n_entries += is_first && first_entry.size() <= n_own_cells ? 0 : n * (n + 3) / 2;
+          }
+        entries.resize(n_entries);
+        entries_of_rank = own(is_first ? 0 : n_entries);
         analyse_seconds += timer.wall_time();
-        if (solver.info() != Eigen::Success)
-          throw ComputationError(
-              "CHOLMOD could not analyse the pattern of the matrix: out of memory?");
       }
 
       void clear() override
       {
-        std::fill_n(matrix.valuePtr(), matrix.nonZeros(), 0.);
-        right_hand_side.setZero();
+        if (is_first)
+          solver->clear();
       }
 
       void add(const unsigned int cell, const double *values, const double *rhs) override
       {
-        const std::vector<int> &rows     = cell_rows[cell];
-        const unsigned int      n        = rows.size();
-        const int              *position = positions.data() + first_position[cell];
-        double                 *storage  = matrix.valuePtr();
-        for (unsigned int i = 0; i < n; ++i)
+        const unsigned int n = rows_of_cell[cell];
+        if (is_first)
           {
-            right_hand_side[rows[i]] += rhs[i];
-            for (unsigned int j = 0; j <= i; ++j)
-              storage[*position++] += values[i * n + j];
+            solver->add(cell, values, n, rhs);
+            return;
           }
+        double *entry = entries.data() + first_entry[cell];
+        for (unsigned int i = 0; i < n; ++i)
+          entry = std::copy_n(values + i * n, i + 1, entry);
+        std::copy_n(rhs, n, entry);
       }
 
       bool solve(Field &solution) override
       {
         dealii::Timer timer;
+        int           done = 1;
         {
           const Phase phase("factorisation");
-          solver.factorize(matrix);
+          gather_cells();
+          if (is_first)
+            done = solver->factorise();
         }
         factor_seconds += timer.wall_time();
-        if (solver.info() != Eigen::Success)
-          return false;
         const Phase phase("triangular solves");
         timer.restart();
-        const Eigen::VectorXd x = solver.solve(right_hand_side);
+        if (is_first && done)
+          done = solver->solve(solution_of_all.data());
+        if (!is_alone)
+          MPI_Bcast(&done, 1, MPI_INT, 0, communicator);
+        if (done)
+          share_solution(solution);
         solve_seconds += timer.wall_time();
-
-        solution = 0;
-        for (unsigned int i = 0; i < row_of_unknown.size(); ++i)
-          if (row_of_unknown[i] >= 0)
-            solution.local_element(i) = x[row_of_unknown[i]];
-        return x.allFinite();
+        return done;
       }
 
       std::string name() const override
@@ -98,130 +131,63 @@ namespace axiforge::solvers
 
       double condition() const override
       {
-        if (factor_seconds == 0) // nothing has been factorised yet
-          return LinearSystem::condition();
-        return estimate_condition(
-            matrix.diagonal(),
-            [this](const Eigen::VectorXd &x) -> Eigen::VectorXd {
-              return matrix.selfadjointView<Eigen::Lower>() * x;
-            },
-            [this](const Eigen::VectorXd &b) -> Eigen::VectorXd { return solver.solve(b); });
+        // Nothing has been factorised yet, or it is elsewhere
+        return is_first && factor_seconds > 0 ? solver->condition() : LinearSystem::condition();
       }
 
     private:
-      void number_rows(const std::string &ordering, const State &state, const SystemNodes &nodes)
+      static std::vector<int> begins(const std::vector<int> &counts)
       {
-        std::vector<int> number(state.tables.n_nodes, -1); // of the nodes in the system
-        int              n = 0;
-        for (const auto &cell : nodes)
-          for (const unsigned int node : cell)
-            if (number[node] < 0)
-              number[node] = n++;
-        n_rows = 2 * n;
-
-        const std::vector<int> place = places(ordering, nodes, number, n);
-        row_of_unknown.assign(2 * state.tables.n_nodes, -1);
-        for (unsigned int node = 0; node < number.size(); ++node)
-          if (number[node] >= 0)
-            for (unsigned int c = 0; c < 2; ++c)
-              row_of_unknown[2 * node + c] = 2 * place[number[node]] + c;
-        right_hand_side.setZero(n_rows);
-        cell_rows.resize(nodes.size());
-        for (unsigned int cell = 0; cell < nodes.size(); ++cell)
-          for (const unsigned int node : nodes[cell])
-            for (unsigned int c = 0; c < 2; ++c)
-              cell_rows[cell].push_back(row_of_unknown[2 * node + c]);
+        std::vector<int> sums(counts.size(), 0);
+        std::partial_sum(counts.begin(), counts.end() - 1, sums.begin() + 1);
+        return sums;
       }
 
-      /// Where each of the n nodes stands in an order with little fill, that of the graph of the
-      /// nodes, which is four times smaller than that of the unknowns.
-      static std::vector<int> places(const std::string      &ordering,
-                                     const SystemNodes      &nodes,
-                                     const std::vector<int> &number,
-                                     const int               n)
+      /// Adds the cells of the other ranks to the matrix of the first one.
+      void gather_cells()
       {
-        std::vector<Eigen::Triplet<double>> couplings;
-        for (const auto &cell : nodes)
-          for (const unsigned int a : cell)
-            for (const unsigned int b : cell)
-              if (number[a] >= number[b])
-                couplings.emplace_back(number[a], number[b], 1.);
-        SparseMatrix graph(n, n);
-        graph.setFromTriplets(couplings.begin(), couplings.end());
-
-        const bool dissection =
-            ordering == "nested dissection" || (ordering == "automatic" && n > 5000);
-        cholmod_common common;
-        cholmod_start(&common);
-        common.nmethods           = 1;
-        common.method[0].ordering = dissection ? CHOLMOD_METIS : CHOLMOD_AMD;
-        common.print              = 0;
-        cholmod_sparse view       = Eigen::viewAsCholmod(Eigen::Ref<SparseMatrix>(graph));
-        view.stype                = -1; // the lower triangle of a symmetric matrix
-        cholmod_factor  *factor   = cholmod_analyze(&view, &common);
-        std::vector<int> result(n);
-        for (int k = 0; factor && k < n; ++k)
-          result[static_cast<const int *>(factor->Perm)[k]] = k;
-        const bool done = factor != nullptr;
-        cholmod_free_factor(&factor, &common);
-        cholmod_finish(&common);
-        if (!done)
-          throw ComputationError("CHOLMOD could not order the unknowns: out of memory?");
-        return result;
-      }
-
-      void make_pattern(const SystemNodes &nodes)
-      {
-        std::vector<std::vector<int>> columns(n_rows);
-        for (const auto &rows : cell_rows)
-          for (const int i : rows)
-            for (const int j : rows)
-              if (i >= j)
-                columns[j].push_back(i);
-        matrix.resize(n_rows, n_rows);
-        std::size_t n_entries = 0;
-        for (auto &column : columns)
+        if (is_alone)
+          return;
+        const std::vector<int> first = begins(entries_of_rank);
+        MPI_Gatherv(is_first ? nullptr : entries.data(), is_first ? 0 : entries.size(), MPI_DOUBLE,
+                    entries.data(), entries_of_rank.data(), first.data(), MPI_DOUBLE, 0,
+                    communicator);
+        if (!is_first)
+          return;
+        for (unsigned int cell = n_own_cells; cell < rows_of_cell.size(); ++cell)
           {
-            std::sort(column.begin(), column.end());
-            column.erase(std::unique(column.begin(), column.end()), column.end());
-            n_entries += column.size();
-          }
-        if (n_entries > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-          throw ComputationError(
-              "The matrix is too large for CHOLMOD's 32-bit indices: use several ranks.");
-        matrix.resizeNonZeros(n_entries);
-        int entry = 0;
-        for (std::size_t j = 0; j < n_rows; ++j)
-          {
-            matrix.outerIndexPtr()[j] = entry;
-            for (const int i : columns[j])
-              matrix.innerIndexPtr()[entry++] = i;
-          }
-        matrix.outerIndexPtr()[n_rows] = entry;
-
-        for (unsigned int cell = 0; cell < nodes.size(); ++cell)
-          {
-            first_position.push_back(positions.size());
-            const std::vector<int> &rows = cell_rows[cell];
-            for (unsigned int i = 0; i < rows.size(); ++i)
-              for (unsigned int j = 0; j <= i; ++j)
-                {
-                  const int   row = std::max(rows[i], rows[j]), column = std::min(rows[i], rows[j]);
-                  const auto &list = columns[column];
-                  positions.push_back(
-                      matrix.outerIndexPtr()[column] +
-                      (std::lower_bound(list.begin(), list.end(), row) - list.begin()));
-                }
+            const unsigned int n      = rows_of_cell[cell];
+            const double      *packed = entries.data() + first_entry[cell];
+            solver->add(cell, packed, 0, packed + n * (n + 1) / 2);
           }
       }
 
-      std::vector<int>              row_of_unknown; ///< -1: not in the system
-      std::vector<std::vector<int>> cell_rows;
-      std::vector<int>         positions; ///< in the matrix' values, lower triangle of each cell
-      std::vector<std::size_t> first_position;
-      SparseMatrix             matrix; ///< lower triangle
-      Eigen::VectorXd          right_hand_side;
-      Eigen::CholmodSupernodalLLT<SparseMatrix, Eigen::Lower> solver;
+      void share_solution(Field &solution)
+      {
+        const double *mine = solution_of_all.data();
+        if (!is_alone)
+          {
+            MPI_Scatterv(solution_of_all.data(), unknowns_of_rank.data(), first_unknown.data(),
+                         MPI_DOUBLE, solution_of_rank.data(), solution_of_rank.size(), MPI_DOUBLE,
+                         0, communicator);
+            mine = solution_of_rank.data();
+          }
+        solution = 0;
+        for (unsigned int i = 0; i < solution_of_rank.size(); ++i)
+          solution.local_element(i) = mine[i];
+      }
+
+      MPI_Comm                       communicator;
+      bool                           is_first, is_alone;
+      std::unique_ptr<CholmodSystem> solver; ///< on the first rank
+
+      // Of the own cells; on the first rank those of the others stand behind them.
+      unsigned int              n_own_cells;
+      std::vector<unsigned int> rows_of_cell, first_entry;
+      std::vector<double>       entries; ///< of the cells that do not belong to the first rank
+
+      std::vector<int>    entries_of_rank, unknowns_of_rank, first_unknown;
+      std::vector<double> solution_of_all, solution_of_rank;
     };
   } // namespace
 
@@ -231,8 +197,11 @@ namespace axiforge::solvers
                                                    const State       &state,
                                                    const SystemNodes &nodes)
   {
-    if (kind == "cholmod")
-      return std::make_unique<CholmodSystem>(ordering, state, nodes);
+    // Beyond that the factor outgrows 32-bit indices and, before long, one machine.
+    constexpr unsigned int most_on_one_rank = 3'000'000;
+    if (kind == "cholmod" || (kind == "automatic" && state.n_unknowns() <= most_on_one_rank) ||
+        (kind == "automatic" && MPI::n_mpi_processes(state.communicator) == 1))
+      return std::make_unique<FirstRankSystem>(ordering, state, nodes);
     return make_mumps_system(state, nodes);
   }
 } // namespace axiforge::solvers

@@ -50,7 +50,7 @@ namespace axiforge::solvers
   };
 
   /**
-   * @param kind "cholmod" or "mumps"
+   * @param kind "cholmod", "mumps" or "automatic"
    * @param ordering "amd", "nested dissection" or "automatic" (cholmod only)
    */
   std::unique_ptr<LinearSystem> make_linear_system(const std::string &kind,

@@ -83,7 +83,8 @@ namespace axiforge::tools
      * penetrating points whatever their depth. Returns their number:
      * the nearest first, then the other flank of a concave corner or, if it is within reach as well
      * and has another direction, another chain of the same tool. A large reach makes this a plain
-     * nearest query. Far points in front of the tool cost next to nothing.
+     * nearest query. Points far in front of all tangent planes of a
+     * chain, as above a platen, cost next to nothing; under a die that opens what near ones do.
      */
     unsigned int find(const Point &x, double reach, std::array<Contact, 2> &contacts) const;
 
