@@ -328,34 +328,61 @@ TEST(Adapt, surface_of_tools)
 }
 
 
+namespace
+{
+  // Three cells along the radius under a cone with a rounded corner.
+  struct ConeProblem
+  {
+    explicit ConeProblem(const Entries &entries)
+        : problem(Entries{ "Tools = cone", "Process/End stroke = 1",
+                           "Tool cone/Geometry file = " + geometry("cone_tool.geo"),
+                           "Tool cone/Geometry parameters = HalfAngle = 60, TipRadius = 12, "
+                           "CornerRadius = 4, Radius = 60, Z = 25",
+                           "Tool cone/Motion/Type = constant velocity",
+                           "Tool cone/Motion/Velocity = 0, -0.25" } +
+                  workpiece(geometry("cylinder.geo"), "RadialCells = 3, AxialCells = 3") +
+                  perfectly_plastic(100) + entries)
+        , state(problem.state)
+        , tool(problem.scene.tools[0].profile)
+    {
+      problem.map_nodes([&](const Point &x) {
+        std::array<tools::Contact, 2> found;
+        if (x[1] < 24.99 ||
+            tool.find(Point(x[0], 25 + 0.577 * std::max(0., x[0] - 12)), 1e3, found) == 0)
+          return x;
+        return x[0] == 0 ? x : found[0].closest;
+      });
+      for (unsigned int b = 0; b < state.contacts.size(); ++b)
+        if (state.node_position(state.tables.boundary_nodes[b].node)[1] > 24.99 &&
+            state.tables.boundary_nodes[b].free_surface)
+          state.contacts[b].tool[0] = 0;
+    }
+
+    int deepest_level() const
+    {
+      int level = 0;
+      for (const auto &cell : state.triangulation.active_cell_iterators())
+        level = std::max(level, cell->level());
+      return level;
+    }
+
+    FlowProblem           problem;
+    State                &state;
+    const tools::Profile &tool;
+  };
+} // namespace
+
+
 // An edge that cuts through the corner of a tool between its nodes is divided until what it cuts
 // off is below the tolerance.
 TEST(Adapt, chord_error)
 {
-  FlowProblem problem(Entries{ "Tools = cone", "Process/End stroke = 1",
-                               "Tool cone/Geometry file = " + geometry("cone_tool.geo"),
-                               "Tool cone/Geometry parameters = HalfAngle = 60, TipRadius = 12, "
-                               "CornerRadius = 4, Radius = 60, Z = 25",
-                               "Tool cone/Motion/Type = constant velocity",
-                               "Tool cone/Motion/Velocity = 0, -0.25" } +
-                      workpiece(geometry("cylinder.geo"), "RadialCells = 3, AxialCells = 3") +
-                      perfectly_plastic(100) + refinement(0, 0, 6) +
-                      Entries{ "Refinement/Edges per quarter circle = 0",
-                               "Refinement/Largest chord error = 0.002" });
-  State      &state = problem.state;
-  const auto &tool  = problem.scene.tools[0].profile;
-  problem.map_nodes([&](const Point &x) {
-    std::array<tools::Contact, 2> found;
-    if (x[1] < 24.99 ||
-        tool.find(Point(x[0], 25 + 0.577 * std::max(0., x[0] - 12)), 1e3, found) == 0)
-      return x;
-    return x[0] == 0 ? x : found[0].closest;
-  });
-  for (unsigned int b = 0; b < state.contacts.size(); ++b)
-    if (state.node_position(state.tables.boundary_nodes[b].node)[1] > 24.99 &&
-        state.tables.boundary_nodes[b].free_surface)
-      state.contacts[b].tool[0] = 0;
-  const auto worst = [&] {
+  ConeProblem  cone(refinement(0, 0, 6) + Entries{ "Refinement/Edges per quarter circle = 0",
+                                                  "Refinement/Largest chord error = 0.002" });
+  FlowProblem &problem        = cone.problem;
+  State       &state          = cone.state;
+  const tools::Profile &tool  = cone.tool;
+  const auto            worst = [&] {
     double share = 0;
     for (const BoundaryEdge &edge : state.tables.edges)
       if (state.contacts[edge.boundary_nodes[2]].active())
@@ -377,6 +404,31 @@ TEST(Adapt, chord_error)
     ASSERT_LT(++n, 6u);
   EXPECT_GT(n, 0u);
   EXPECT_LT(worst(), 0.0021);
+}
+
+
+// With a target accuracy errors may divide cells beyond the scene's largest level, the geometry of
+// tools may not: a chord error that no cell keeps would go on for ever.
+TEST(Adapt, geometry_keeps_the_largest_level_when_errors_go_beyond_it)
+{
+  ConeProblem  cone(refinement(0, 0, 2) + Entries{ "Refinement/Edges per quarter circle = 0",
+                                                  "Refinement/Largest chord error = 1e-9",
+                                                  "Accuracy/Target accuracy = 1 %" });
+  unsigned int n = 0;
+  while (meshing::adapt(cone.problem.scene, cone.state, meshing::Marking()).changed)
+    ASSERT_LT(++n, 6u);
+  EXPECT_EQ(cone.deepest_level(), 2);
+
+  for (unsigned int cycle = 0; cycle < 3; ++cycle)
+    {
+      fake_stress_peak(cone.problem, Point(5, 5));
+      meshing::Marking by_error;
+      double           relative = 0;
+      by_error.indicators       = meshing::error_indicators(cone.state, 1e-3, relative);
+      by_error.refine_fraction  = 0.9;
+      EXPECT_TRUE(meshing::adapt(cone.problem.scene, cone.state, by_error).changed);
+    }
+  EXPECT_EQ(cone.deepest_level(), 3);
 }
 
 

@@ -8,7 +8,9 @@
 
 namespace axiforge::solvers
 {
-  CholmodSystem::CholmodSystem(const std::string &ordering, const unsigned int n_nodes, const Nodes &nodes)
+  CholmodSystem::CholmodSystem(const std::string &ordering,
+                               const unsigned int n_nodes,
+                               const Nodes       &nodes)
   {
     number_rows(ordering, n_nodes, nodes);
     make_pattern();
@@ -86,7 +88,9 @@ namespace axiforge::solvers
   }
 
 
-  void CholmodSystem::number_rows(const std::string &ordering, const unsigned int n_nodes, const Nodes &nodes)
+  void CholmodSystem::number_rows(const std::string &ordering,
+                                  const unsigned int n_nodes,
+                                  const Nodes       &nodes)
   {
     std::vector<int> number(n_nodes, -1); // of the nodes in the system
     int              n = 0;
@@ -114,9 +118,9 @@ namespace axiforge::solvers
   /// Where each of the n nodes stands in an order with little fill, that of the graph of the
   /// nodes, which is four times smaller than that of the unknowns.
   std::vector<int> CholmodSystem::places(const std::string      &ordering,
-                                 const Nodes            &nodes,
-                                 const std::vector<int> &number,
-                                 const int               n)
+                                         const Nodes            &nodes,
+                                         const std::vector<int> &number,
+                                         const int               n)
   {
     std::vector<Eigen::Triplet<double>> couplings;
     for (const auto &cell : nodes)
@@ -166,8 +170,8 @@ namespace axiforge::solvers
         n_entries += column.size();
       }
     if (n_entries > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-      throw ComputationError(
-          "The matrix is too large for CHOLMOD's 32-bit indices: use \"Flow solver/Linear solver = mumps\".");
+      throw ComputationError("The matrix is too large for CHOLMOD's 32-bit indices: use \"Flow "
+                             "solver/Linear solver = mumps\".");
     matrix.resizeNonZeros(n_entries);
     int entry = 0;
     for (std::size_t j = 0; j < n_rows; ++j)
@@ -187,9 +191,8 @@ namespace axiforge::solvers
             {
               const int   row = std::max(rows[i], rows[j]), column = std::min(rows[i], rows[j]);
               const auto &list = columns[column];
-              positions.push_back(
-                  matrix.outerIndexPtr()[column] +
-                  (std::lower_bound(list.begin(), list.end(), row) - list.begin()));
+              positions.push_back(matrix.outerIndexPtr()[column] +
+                                  (std::lower_bound(list.begin(), list.end(), row) - list.begin()));
             }
       }
   }

@@ -40,21 +40,23 @@ namespace axiforge::solvers
             for (const unsigned int node : cell)
               numbers.push_back(partitioner.local_to_global(2 * node) / 2);
           }
-        rows_of_cell = gather_rows(communicator, sizes);
-        numbers      = gather_rows(communicator, numbers);
-        n_own_cells  = nodes.size();
-        CholmodSystem::Nodes all(rows_of_cell.size());
-        for (unsigned int cell = 0, next = 0; cell < all.size(); ++cell)
-          {
-            all[cell].assign(numbers.begin() + next, numbers.begin() + next + rows_of_cell[cell]);
-            next += rows_of_cell[cell];
-            rows_of_cell[cell] *= 2;
-          }
+        rows_of_cell                  = gather_rows(communicator, sizes);
+        numbers                       = gather_rows(communicator, numbers);
+        n_own_cells                   = nodes.size();
         const unsigned int n_unknowns = state.n_unknowns();
         on_first_rank(communicator, [&] {
+          CholmodSystem::Nodes all(rows_of_cell.size());
+          auto                 next = numbers.begin();
+          for (unsigned int cell = 0; cell < all.size(); ++cell)
+            {
+              all[cell].assign(next, next + rows_of_cell[cell]);
+              next += rows_of_cell[cell];
+            }
           solver = std::make_unique<CholmodSystem>(ordering, n_unknowns / 2, all);
           n_rows = solver->rows();
         });
+        for (unsigned int &rows : rows_of_cell)
+          rows *= 2;
         n_rows = MPI::max(n_rows, communicator);
 
         // What goes to and fro between the first rank and the others.

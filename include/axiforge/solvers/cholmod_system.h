@@ -54,19 +54,17 @@ namespace axiforge::solvers
     using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
 
     void number_rows(const std::string &ordering, unsigned int n_nodes, const Nodes &nodes);
-    static std::vector<int> places(const std::string      &ordering,
-                                   const Nodes            &nodes,
-                                   const std::vector<int> &number,
-                                   int                     n);
-    void                    make_pattern();
+    static std::vector<int>
+    places(const std::string &ordering, const Nodes &nodes, const std::vector<int> &number, int n);
+    void make_pattern();
 
     unsigned int                  n_rows;
     std::vector<int>              row_of_unknown; ///< -1: not in the system
     std::vector<std::vector<int>> cell_rows;
-    std::vector<int>         positions; ///< in the matrix' values, lower triangle of each cell
-    std::vector<std::size_t> first_position;
-    SparseMatrix             matrix; ///< lower triangle
-    Eigen::VectorXd          right_hand_side;
+    std::vector<int>              positions; ///< in the matrix' values, lower triangle of each cell
+    std::vector<std::size_t>      first_position;
+    SparseMatrix                  matrix; ///< lower triangle
+    Eigen::VectorXd               right_hand_side;
     Eigen::CholmodSupernodalLLT<SparseMatrix, Eigen::Lower> solver;
   };
 } // namespace axiforge::solvers
