@@ -90,7 +90,7 @@ Physical Curve("axis") = {4};
             Entries{ "Tools = upper", "Boundaries = outer", "Boundary outer/Velocity r = 1",
                      "Boundary outer/Velocity z = 1", "Time stepping/Scheme = explicit euler",
                      "Time stepping/Time step = 1", "Process/End time = 1",
-                     "Flow solver/Tolerance = 1e-9", "Flow solver/Most iterations = 200" } +
+                     "Flow solver/Tolerance = 1e-10", "Flow solver/Most iterations = 300" } +
             power_law(3 * mu, 1) + workpiece(file, fmt::format("Cells = {}", cells)) +
             platen("upper", H, -U, friction));
         const double dt = 1e-3;
