@@ -7,6 +7,7 @@
 #include "flow_fixture.h"
 
 #include <axiforge/process/step.h>
+#include <axiforge/solvers/contact_set.h>
 
 using namespace axiforge;
 using namespace axiforge::testing_support;
@@ -122,6 +123,52 @@ TEST(Corner, holds_a_node_between_two_tools_or_two_faces)
             EXPECT_NEAR(x.distance(Point(25, 0)), 0, 1e-9);
           }
       EXPECT_EQ(n_double, 1u);
+    }
+}
+
+
+// A cylinder slides up in a bush whose bore widens above z = 12 mm. A node that comes out of the
+// narrow part within the step is let go if little presses it on, not if much does; all others stay.
+TEST(Departure, lets_go_what_would_have_to_be_pulled_back)
+{
+  TemporaryFolder folder;
+  FlowProblem     problem(Entries{ "Tools = bush", "Process/End stroke = 3" } +
+                          workpiece(geometry("cylinder_full.geo"),
+                                    "Radius = 25, Height = 30, RadialCells = 2, AxialCells = 10") +
+                          material +
+                          tool("bush", folder.file("bush.csv", "r_mm,z_mm\n25,-1\n25,12\n"
+                                                                   "26,13\n26,100\n")) +
+                          moving("bush", -1));
+  State          &state = problem.state;
+  const auto      place = [&](const unsigned int b) {
+    return state.node_position(state.tables.boundary_nodes[b].node);
+  };
+  for (unsigned int b = 0; b < state.contacts.size(); ++b)
+    if (std::abs(place(b)[0] - 25) < 1e-9 && place(b)[1] < 12.1)
+      state.contacts[b].tool[0] = 0;
+  // Relative to the bush the workpiece goes up by 1 mm: what is above z = 11 mm now comes out.
+  Field scale, force;
+  scale.reinit(state.velocity);
+  force.reinit(state.velocity);
+  scale = 50;
+  for (const double pressed : { 0.001, 0.9 })
+    {
+      for (unsigned int node = 0; node < state.tables.n_owned_nodes; ++node)
+        force.local_element(2 * node) = -pressed * 100; // the bush presses inwards
+      solvers::ContactSet contact(problem.scene, state);
+      contact.locate(state.velocity, 1.);
+      contact.update_reactions(force, scale, false);
+      const unsigned int released = contact.release_departing(scale);
+      unsigned int       expected = 0;
+      for (unsigned int b = 0; b < state.contacts.size(); ++b)
+        {
+          const bool leaves = pressed < 0.1 && state.contacts[b].active() && place(b)[1] > 11.1;
+          expected += leaves;
+          EXPECT_EQ(contact.nodes[b].active(), state.contacts[b].active() && !leaves)
+              << pressed << " at " << place(b);
+        }
+      EXPECT_EQ(released, expected);
+      EXPECT_EQ(released > 0, pressed < 0.1);
     }
 }
 

@@ -1,13 +1,20 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <deal.II/base/mpi.h>
+
 #include <axiforge/base/phases.h>
 #include <axiforge/solvers/contact_set.h>
 
 namespace axiforge::solvers
 {
+  namespace MPI = dealii::Utilities::MPI;
+
   namespace
   {
     /// Directions closer than this (sine of the angle) are one condition.
     constexpr double parallel = 0.02;
+
+    /// Gap, in shares of the edges at a node, below which nothing is torn off.
+    constexpr double least_departure = 1e-3;
 
     double cross(const Vector2 &a, const Vector2 &b)
     {
@@ -205,6 +212,57 @@ namespace axiforge::solvers
             ++n_releases[b];
             n_changes += node.owned;
           }
+      }
+    return n_changes;
+  }
+
+
+  Field ContactSet::edge_lengths() const
+  {
+    Field length;
+    length.reinit(state.velocity);
+    for (const BoundaryEdge &edge : state.tables.edges)
+      if (edge.owned)
+        {
+          const double chord =
+              (state.node_position(edge.nodes[1]) - state.node_position(edge.nodes[0])).norm();
+          for (const unsigned int node : edge.nodes)
+            length.local_element(2 * node) += chord / 2;
+        }
+    length.compress(dealii::VectorOperation::add);
+    length.update_ghost_values();
+    return length;
+  }
+
+
+  unsigned int ContactSet::release_departing(const Field &scale)
+  {
+    // With two conditions, or where a neighbour decides, the sign of one reaction does not tell.
+    const auto may_depart = [&](const unsigned int b) {
+      return nodes[b].active() && nodes[b].tool[1] == no_tool && nodes[b].gap[0] > 0 &&
+             state.tables.boundary_nodes[b].axis_neighbour == no_tool;
+    };
+    bool any = false;
+    for (unsigned int b = 0; b < nodes.size() && !any; ++b)
+      any = may_depart(b);
+    if (MPI::max(static_cast<unsigned int>(any), state.communicator) == 0)
+      return 0;
+
+    const Field  length    = edge_lengths();
+    unsigned int n_changes = 0;
+    for (unsigned int b = 0; b < nodes.size(); ++b)
+      {
+        if (!may_depart(b))
+          continue;
+        const BoundaryNode &node   = state.tables.boundary_nodes[b];
+        const double        strain = nodes[b].gap[0] / length.local_element(2 * node.node);
+        const double        force =
+            scale.local_element(2 * node.node) + scale.local_element(2 * node.node + 1);
+        if (strain < least_departure || nodes[b].reaction[0] >= strain * force)
+          continue;
+        nodes[b].tool[0]  = no_tool;
+        nodes[b].reaction = { { 0, 0 } };
+        n_changes += node.owned;
       }
     return n_changes;
   }

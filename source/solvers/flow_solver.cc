@@ -149,6 +149,8 @@ namespace axiforge::solvers
         timer.restart();
         unsigned int changes = contact->locate(velocity, time_step);
         contact->update_reactions(internal, scale, false);
+        if (iteration == 0 && state.step > 0)
+          changes += contact->release_departing(scale);
         contact->set_pressures(position);
         friction->evaluate(*contact, position, velocity, points, time_step, scene.flow.newton());
         add_friction_forces();

@@ -50,6 +50,15 @@ namespace axiforge::solvers
      */
     unsigned int update_reactions(const Field &force, const Field &scale, bool may_release);
 
+    /**
+     * Releases the nodes that the first increment of a step would have to pull back on to their
+     * tool: those whose reaction is less than what closing the gap takes that they run into, as
+     * where a wall leaves the land of a punch. For the iterate that a step starts from. Collective.
+     * @param scale as in update_reactions()
+     * @return number of locally owned nodes released
+     */
+    unsigned int release_departing(const Field &scale);
+
     /// Axes and prescribed increments of all boundary nodes, for the present set.
     void make_frames(const Field &velocity, double time_step, std::vector<NodeFrame> &frames) const;
 
@@ -93,6 +102,9 @@ namespace axiforge::solvers
     std::vector<NodeContact> nodes; ///< per boundary node of the state's tables
 
   private:
+    /// Half the lengths of the edges at each node, in the first component [mm].
+    Field edge_lengths() const;
+
     bool in_concave_pair(unsigned int b, unsigned int tool, unsigned int face) const;
 
     const scene::Scene       &scene;
