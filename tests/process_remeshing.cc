@@ -239,6 +239,53 @@ TEST(Remeshing, CurvedToolIsKept)
 }
 
 
+// The middle node of a touching edge slides along the tool: a new mesh before the edge turns back
+// on itself, and a sound one also after that.
+TEST(Remeshing, MiddleNodesThatSlideAside)
+{
+  for (const double place : { 0.35, 0.28, 0.15 })
+    {
+      SCOPED_TRACE(place);
+      FlowProblem  problem(scene_with(perfectly_plastic(100), {}, 6));
+      State       &state = problem.state;
+      const double edge  = radius / 6;
+      state.step         = 1;
+      unsigned int n     = 0;
+      for (unsigned int b = 0; b < state.contacts.size(); ++b)
+        {
+          const unsigned int node = state.tables.boundary_nodes[b].node;
+          const Point        x    = state.node_position(node);
+          if (std::abs(x[1] - half_height) > 1e-9)
+            continue;
+          state.contacts[b].tool[0] = 0;
+          if (std::abs(x[0] - 2.5 * edge) > 1e-9)
+            continue;
+          state.position.local_element(2 * node) = (2 + place) * edge;
+          ++n;
+        }
+      ASSERT_EQ(n, 1u);
+      state.position.update_ghost_values();
+      const std::string reason = meshing::reason_to_remesh(problem.scene, state);
+      if (place > 0.3)
+        {
+          EXPECT_EQ(reason, "");
+          continue;
+        }
+      EXPECT_NE(
+          reason.find(place > 0.25 ? "a touching edge is divided at 0.28" : "Jacobian of -0.4"),
+          std::string::npos)
+          << reason;
+      const double                volume = measure(state).volume;
+      const meshing::RemeshResult result = meshing::remesh(problem.scene, state);
+      ASSERT_TRUE(result.done) << result.fault;
+      EXPECT_GT(result.jacobian, 0.3);
+      EXPECT_NEAR(measure(state).volume / volume, 1, 1e-10);
+      EXPECT_EQ(meshing::reason_to_remesh(problem.scene, state), "");
+      check_boundary(problem);
+    }
+}
+
+
 TEST(Remeshing, MostCellsBoundTheDemands)
 {
   const auto cells_with = [](const unsigned int most) {

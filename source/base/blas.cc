@@ -68,7 +68,7 @@ namespace axiforge
  * regions for each front, so that this was a sixth of the factorisation of 5,000 unknowns.
  */
 extern "C" __attribute__((visibility("default"))) void GOMP_parallel(void (*body)(void *),
-                                                                     void         *data,
+                                                                     void              *data,
                                                                      const unsigned int n_threads,
                                                                      const unsigned int flags)
 {

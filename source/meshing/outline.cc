@@ -14,6 +14,10 @@ namespace axiforge::meshing
 {
   namespace
   {
+    /// A parabola turns back on itself if its middle is so far from that of the chord [chord].
+    constexpr double turns_back = 0.25;
+
+
     bool touches(const SurfaceNode &node, const int tool)
     {
       return tool >= 0 && (node.tool[0] == tool || node.tool[1] == tool);
@@ -33,6 +37,14 @@ namespace axiforge::meshing
       piece.tool = tool;
       measure_arc(piece);
       return piece;
+    }
+
+
+    /// Where the middle of an edge stands along its chord: 0 at the start, 1 at the end.
+    double place_of_middle(const OutlinePiece &piece)
+    {
+      const Vector2 chord = piece.x[1] - piece.x[0];
+      return (piece.x[2] - piece.x[0]) * chord / chord.norm_square();
     }
 
 
@@ -158,6 +170,12 @@ namespace axiforge::meshing
               throw ComputationError("the outline of the workpiece is not closed");
             e = next->second;
           }
+        for (OutlinePiece &piece : loop)
+          if (piece.tool >= 0 && std::abs(place_of_middle(piece) - 0.5) > turns_back)
+            {
+              piece.x[2] = on_tool(piece.tool, piece.x[0] + 0.5 * (piece.x[1] - piece.x[0]));
+              measure_arc(piece);
+            }
         if (!loop.empty())
           loops.push_back(loop);
       }
@@ -223,6 +241,22 @@ namespace axiforge::meshing
                                        found) == 0)
       return x;
     return found[0].closest + shift[tool];
+  }
+
+
+  double Outline::least_division(const State &state)
+  {
+    double least = 0.5;
+    for (const BoundaryEdge &edge : state.tables.edges)
+      {
+        if (!edge.owned || is_straight(edge.id) || !state.contacts[edge.boundary_nodes[2]].active())
+          continue;
+        OutlinePiece piece;
+        for (unsigned int a = 0; a < 3; ++a)
+          piece.x[a] = state.node_position(edge.nodes[a]);
+        least = std::min(least, 0.5 - std::abs(place_of_middle(piece) - 0.5));
+      }
+    return dealii::Utilities::MPI::min(least, state.communicator);
   }
 
 

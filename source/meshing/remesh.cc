@@ -29,6 +29,10 @@ namespace axiforge::meshing
     constexpr double worse_jacobian = 0.8, worse_penetration = 1.5;
 
 
+    /// A new mesh is made where the middle node of a touching edge divides it into parts of which
+    /// one is smaller than this [chord]; at 0.25 the edge turns back on itself.
+    constexpr double least_division = 0.3;
+
     /// Edge length over sqrt(area / cells): gmsh's meshes have 1.3 times the cells of a square grid
     /// (324 wanted: 400 to 440 made).
     constexpr double size_for_cells = 1.14;
@@ -269,6 +273,8 @@ namespace axiforge::meshing
           predicted <
           std::min(limits.smallest_predicted_jacobian, worse_jacobian * record.jacobian))
         return fmt::format("a Jacobian of {:.3g} in the next step", predicted);
+    if (const double part = Outline::least_division(state); part < least_division)
+      return fmt::format("a touching edge is divided at {:.3g} of its length", part);
     // A depth that comes back a few steps after a new mesh is what edges of this size leave.
     const double depth = Outline::penetration(state, scene);
     const double since = state.step - record.last_attempt;
