@@ -243,10 +243,12 @@ TEST(Remeshing, CurvedToolIsKept)
 // on itself, and a sound one also after that.
 TEST(Remeshing, MiddleNodesThatSlideAside)
 {
-  for (const double place : { 0.35, 0.28, 0.15 })
+  for (const double place : { 0.35, 0.28, 0. })
     {
       SCOPED_TRACE(place);
-      FlowProblem  problem(scene_with(perfectly_plastic(100), {}, 6));
+      // New edges are shorter than what the old one turns back by.
+      FlowProblem  problem(scene_with(perfectly_plastic(100), {}, 6) +
+                           Entries{ "Remeshing/Element size = 0.4" });
       State       &state = problem.state;
       const double edge  = radius / 6;
       state.step         = 1;
@@ -272,7 +274,7 @@ TEST(Remeshing, MiddleNodesThatSlideAside)
           continue;
         }
       EXPECT_NE(
-          reason.find(place > 0.25 ? "a touching edge is divided at 0.28" : "Jacobian of -0.4"),
+          reason.find(place > 0.25 ? "a touching edge is divided at 0.28" : "a Jacobian of -"),
           std::string::npos)
           << reason;
       const double                volume = measure(state).volume;
