@@ -247,8 +247,9 @@ TEST(Remeshing, MiddleNodesThatSlideAside)
     {
       SCOPED_TRACE(place);
       // New edges are shorter than what the old one turns back by.
-      FlowProblem  problem(scene_with(perfectly_plastic(100), {}, 6) +
-                           Entries{ "Remeshing/Element size = 0.4" });
+      FlowProblem problem(
+          scene_with(perfectly_plastic(100), {}, 6) +
+          Entries{ fmt::format("Remeshing/Element size = {}", place > 0 ? 2 : 0.4) });
       State       &state = problem.state;
       const double edge  = radius / 6;
       state.step         = 1;

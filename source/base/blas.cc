@@ -72,9 +72,10 @@ extern "C" __attribute__((visibility("default"))) void GOMP_parallel(void (*body
                                                                      const unsigned int n_threads,
                                                                      const unsigned int flags)
 {
-  using Function = void(void (*)(void *), void *, unsigned int, unsigned int);
-  if (axiforge::parallel_regions_in_place)
+  using Function             = void(void (*)(void *), void *, unsigned int, unsigned int);
+  static const auto original = reinterpret_cast<Function *>(dlsym(RTLD_NEXT, "GOMP_parallel"));
+  if (axiforge::parallel_regions_in_place || !original)
     body(data);
   else
-    reinterpret_cast<Function *>(dlsym(RTLD_NEXT, "GOMP_parallel"))(body, data, n_threads, flags);
+    original(body, data, n_threads, flags);
 }

@@ -31,7 +31,8 @@ namespace axiforge::meshing
 
     /// A new mesh is made where the middle node of a touching edge divides it into parts of which
     /// one is smaller than this [chord]; at 0.25 the edge turns back on itself.
-    constexpr double least_division = 0.3;
+    constexpr double smallest_division = 0.3;
+
 
     /// Edge length over sqrt(area / cells): gmsh's meshes have 1.3 times the cells of a square grid
     /// (324 wanted: 400 to 440 made).
@@ -273,7 +274,8 @@ namespace axiforge::meshing
           predicted <
           std::min(limits.smallest_predicted_jacobian, worse_jacobian * record.jacobian))
         return fmt::format("a Jacobian of {:.3g} in the next step", predicted);
-    if (const double part = Outline::least_division(state); part < least_division)
+    if (const double part = Outline::least_division(state);
+        part < std::min(smallest_division, worse_jacobian * record.division))
       return fmt::format("a touching edge is divided at {:.3g} of its length", part);
     // A depth that comes back a few steps after a new mesh is what edges of this size leave.
     const double depth = Outline::penetration(state, scene);
@@ -345,6 +347,7 @@ namespace axiforge::meshing
     record.jacobian        = after.smallest_jacobian;
     record.vertex_jacobian = after.smallest_vertex_jacobian;
     record.penetration     = Outline::penetration(state, scene);
+    record.division        = Outline::least_division(state);
     return result;
   }
 

@@ -30,6 +30,7 @@ namespace axiforge::solvers
       , n_releases(nodes.size(), 0)
       , tool_velocities(scene.tools.size())
       , reach(0.05 * scene.size)
+      , catch_distance(1e-10 * scene.size)
   {
     for (const auto &group : state.boundary_ids)
       {
@@ -64,9 +65,8 @@ namespace axiforge::solvers
     if (scene.tools.empty())
       return 0;
     const Phase  phase("contact search");
-    const double end            = state.time + time_step;
-    const double catch_distance = 1e-10 * scene.size;
-    unsigned int n_changes      = 0;
+    const double end       = state.time + time_step;
+    unsigned int n_changes = 0;
 
     std::vector<Vector2> shift(scene.tools.size());
     for (unsigned int tool = 0; tool < scene.tools.size(); ++tool)
@@ -239,7 +239,7 @@ namespace axiforge::solvers
   {
     // With two conditions, or where a neighbour decides, the sign of one reaction does not tell.
     const auto may_depart = [&](const unsigned int b) {
-      return nodes[b].active() && nodes[b].tool[1] == no_tool && nodes[b].gap[0] > 0 &&
+      return nodes[b].active() && nodes[b].tool[1] == no_tool && nodes[b].gap[0] > catch_distance &&
              state.tables.boundary_nodes[b].axis_neighbour == no_tool;
     };
     bool any = false;

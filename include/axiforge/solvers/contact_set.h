@@ -111,8 +111,9 @@ namespace axiforge::solvers
     const State              &state;
     std::vector<unsigned int> n_releases; ///< of each boundary node in this step
     std::vector<Vector2>      tool_velocities;
-    std::vector<unsigned int> condition; ///< per boundary id
-    Field                     area;      ///< that the nodes stand for [mm^2]
-    double                    reach;     ///< how far an active node is looked for [mm]
+    std::vector<unsigned int> condition;      ///< per boundary id
+    Field                     area;           ///< that the nodes stand for [mm^2]
+    double                    reach;          ///< how far an active node is looked for [mm]
+    double                    catch_distance; ///< gaps below this are round-off [mm]
   };
 } // namespace axiforge::solvers

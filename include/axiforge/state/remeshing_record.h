@@ -13,6 +13,6 @@ namespace axiforge
     unsigned int wanted_cells = 0; ///< cells at the start; 0 before the first remeshing
     unsigned int last_attempt = 0; ///< step after which a new mesh was made or tried
     /// Of the mesh right after the last remeshing: the limits are relaxed to these.
-    double jacobian = 1, vertex_jacobian = 1, penetration = 0;
+    double jacobian = 1, vertex_jacobian = 1, penetration = 0, division = 0.5;
   };
 } // namespace axiforge
