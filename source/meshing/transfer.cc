@@ -146,20 +146,21 @@ namespace axiforge::meshing
               least[c] = std::min(least[c], x[c]);
               most[c]  = std::max(most[c], x[c]);
             }
-        int first[2], last[2];
-        for (unsigned int c = 0; c < 2; ++c)
-          {
-            const double margin = 0.25 * std::max(most[0] - least[0], most[1] - least[1]);
-            const int    n      = static_cast<int>(bins[c]) - 1;
-            first[c]            = std::clamp(
-                           static_cast<int>(std::floor((least[c] - margin - lower[c]) / bin_size)), 0, n);
-            last[c] = std::clamp(
-                static_cast<int>(std::floor((most[c] + margin - lower[c]) / bin_size)), 0, n);
-          }
-        for (int j = first[1]; j <= last[1]; ++j)
-          for (int i = first[0]; i <= last[0]; ++i)
+        const double margin = 0.25 * std::max(most[0] - least[0], most[1] - least[1]);
+        boxes.push_back({ { Point(least[0] - margin, least[1] - margin),
+                            Point(most[0] + margin, most[1] + margin) } });
+        const auto &[low, high] = boxes.back().get_boundary_points();
+        for (unsigned int j = bin(low, 1); j <= bin(high, 1); ++j)
+          for (unsigned int i = bin(low, 0); i <= bin(high, 0); ++i)
             cells_of_bin[j * bins[0] + i].push_back(cell);
       }
+  }
+
+
+  unsigned int OldFields::bin(const Point &x, const unsigned int c) const
+  {
+    return std::clamp(static_cast<int>(std::floor((x[c] - lower[c]) / bin_size)), 0,
+                      static_cast<int>(bins[c]) - 1);
   }
 
 
@@ -230,12 +231,8 @@ namespace axiforge::meshing
         }
       return outside < 1e-12;
     };
-    unsigned int bin[2];
-    for (unsigned int c = 0; c < 2; ++c)
-      bin[c] = std::clamp(static_cast<int>(std::floor((x[c] - lower[c]) / bin_size)), 0,
-                          static_cast<int>(bins[c]) - 1);
-    for (const unsigned int cell : cells_of_bin[bin[1] * bins[0] + bin[0]])
-      if (look(cell))
+    for (const unsigned int cell : cells_of_bin[bin(x, 1) * bins[0] + bin(x, 0)])
+      if (boxes[cell].point_inside(x) && look(cell))
         break;
     if (least > farthest_outside)
       for (unsigned int cell = 0; cell < snapshot.cells.size(); ++cell)

@@ -71,11 +71,9 @@ namespace axiforge::process
         }
       if (limits.time_step > 0)
         return limits.time_step;
-      const Measures size = measure(state);
       // What a target accuracy allows may be longer than the usual step, but not without limit.
       const double factor = scene.accuracy.driven() && state.step > 0 ? largest_driven : 1;
-      return factor * limits.largest_reduction * (size.highest - size.lowest) /
-             fastest(scene, state.time);
+      return factor * limits.largest_reduction * height_of(state) / fastest(scene, state.time);
     }
 
 

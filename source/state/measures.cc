@@ -119,6 +119,21 @@ namespace axiforge
   }
 
 
+  double height_of(const State &state)
+  {
+    double lowest = 1e300, highest = -1e300;
+    for (const auto &nodes : state.tables.cells)
+      for (const unsigned int node : nodes)
+        {
+          const double z = state.node_position(node)[1];
+          lowest         = std::min(lowest, z);
+          highest        = std::max(highest, z);
+        }
+    return dealii::Utilities::MPI::max(highest, state.communicator) -
+           dealii::Utilities::MPI::min(lowest, state.communicator);
+  }
+
+
   double integral(const State                                     &state,
                   const unsigned int                               cell,
                   const std::function<double(unsigned int point)> &quantity)

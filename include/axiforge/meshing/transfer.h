@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include <deal.II/base/bounding_box.h>
+
 #include <axiforge/meshing/snapshot.h>
 
 namespace axiforge::meshing
@@ -35,13 +37,16 @@ namespace axiforge::meshing
     void history(const Place &place, CellHistory &history, unsigned int q) const;
 
   private:
-    double try_cell(unsigned int cell, const Point &x, double (&xi)[2]) const;
+    /// Column (c = 0) or row (1) of the bin of a point, the nearest for points outside.
+    unsigned int bin(const Point &x, unsigned int c) const;
+    double       try_cell(unsigned int cell, const Point &x, double (&xi)[2]) const;
 
     const Snapshot                        &snapshot;
     Point                                  lower;
     double                                 bin_size;
     unsigned int                           bins[2];
     std::vector<std::vector<unsigned int>> cells_of_bin;
+    std::vector<dealii::BoundingBox<2>>    boxes;    ///< of the cells, a quarter larger
     double                                 gauss[3]; ///< points on [0, 1]
   };
 

@@ -22,6 +22,9 @@ namespace axiforge
   /// Collective.
   Measures measure(const State &state);
 
+  /// highest - lowest alone [mm]: no integrals. Collective.
+  double height_of(const State &state);
+
   /// Integral over the body of revolution of a quantity given at the Gauss points of a locally
   /// owned
   /// cell, in the present geometry.
