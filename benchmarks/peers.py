@@ -2,17 +2,18 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Run time against error beside FreeFEM and CalculiX: cylinder upsetting 50 x 50 mm to 30 mm.
 
-    scripts/benchmark.sh peers [--quick] [--case TEXT] [--work FOLDER] [--report] [--results FOLDER]
+    scripts/benchmark.sh peers [--quick] [--case TEXT] [--again] [--work FOLDER] [--report] [--results FOLDER]
 
 Runs axiforge, FreeFEM (peers/freefem.edp) and CalculiX (peers/calculix.py) on the same cases with several meshes and
 steps, one process on one core at a time, and writes peers.csv, peers.md and the plot doc/images/peers.svg. What has
-been run stays in FOLDER (build/peers) and is not run again; --report only evaluates it. --case limits the
-cases to those that have TEXT in their name. The peers are optional: apt-get install freefem++ libfreefem++
+been run stays in FOLDER (build/peers) and is not run again, but with another revision of axiforge or with --again;
+--report only evaluates it. --case limits the cases to those that have TEXT in their name. The peers are optional: apt-get install freefem++ libfreefem++
 calculix-ccx. Needs numpy and matplotlib (Debian: python3-matplotlib).
 """
 import argparse
 import csv
 import datetime
+import functools
 import json
 import math
 import os
@@ -233,21 +234,30 @@ def codes_of(friction):
     return [c for c in CODES if not (c == "CalculiX" and friction == "shear") and not (c == "FreeFEM" and friction == "coulomb")]
 
 
-def run(programs, work, material, friction, code, o, limit):
-    """Runs it unless that has been done; the record."""
+@functools.lru_cache
+def version_of(program):
+    """The line in which axiforge names its revision; the peers come from Debian and stay what they are."""
+    return subprocess.run([program, "--version"], capture_output=True, text=True).stdout.split("\n")[0].strip()
+
+
+def run(programs, work, material, friction, code, o, limit, again):
+    """Runs it unless this revision has done that; the record. With again = None what is there counts, whatever it is of."""
     name = "-".join(f"{key}{value}" for key, value in o.items())
     folder = work / f"{material}-{friction}" / code / name
     record = folder / "record.json"
-    if record.exists():
-        return json.loads(record.read_text())
+    version = version_of(programs[code]) if code == "axiforge" else ""
+    if record.exists() and not again:
+        data = json.loads(record.read_text())
+        if again is None or data.get("version", "") == version:
+            return data
     folder.mkdir(parents=True, exist_ok=True)
-    data = dict(material=material, friction=friction, code=code, options=o)
+    data = dict(material=material, friction=friction, code=code, options=o, version=version, date=str(datetime.date.today()))
     try:
         result, values = RUNNERS[code](programs[code], material, friction, o, folder, limit)
         cpu, wall, status = result
         if cpu < 1.5:  # short runs: the better of two
-            again, second = RUNNERS[code](programs[code], material, friction, o, folder, limit)
-            cpu, wall = min(cpu, again[0]), min(wall, again[1])
+            other, second = RUNNERS[code](programs[code], material, friction, o, folder, limit)
+            cpu, wall = min(cpu, other[0]), min(wall, other[1])
             if "run_cpu" in values:
                 values["run_cpu"] = min(values["run_cpu"], second["run_cpu"])
         data.update(values, cpu=cpu, wall=wall, status=status)
@@ -370,10 +380,10 @@ def quotient(theirs, ours):
     return f"({figure})" if "extrapolated" in (theirs[1], ours[1]) or ours[1] == ">" else figure
 
 
-def start_up(programs, work):
+def start_up(programs, work, again):
     """CPU seconds of each program that does nothing, least of five."""
     record = work / "start.json"
-    if record.exists():
+    if record.exists() and not again:
         return json.loads(record.read_text())
     work.mkdir(parents=True, exist_ok=True)
     (work / "nothing.edp").write_text('load "MUMPS_seq"\nload "Element_QF"\nload "qf11to25"\n')
@@ -388,7 +398,7 @@ def start_up(programs, work):
     return starts
 
 
-def report(done, references, programs, starts, results, picture):
+def report(done, references, starts, results, picture):
     results.mkdir(parents=True, exist_ok=True)
     rows, fronts, nets = [], {}, {}
     for record in done:
@@ -419,8 +429,8 @@ def report(done, references, programs, starts, results, picture):
         writer.writerows(rows)
 
     cpu = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), "unknown")
-    version = subprocess.run([programs["axiforge"], "--version"], capture_output=True, text=True).stdout.strip().split("\n")[0]
-    text = [f"Machine: {cpu}, {os.cpu_count()} cores, one used. Date: {datetime.date.today()}. {version}.", ""]
+    said = {name: sorted({record[name] for record in done if record.get(name)}) for name in ("date", "version")}
+    text = [f"Machine: {cpu}, {os.cpu_count()} cores, one used. Date: {' to '.join(said['date'][:: max(1, len(said['date']) - 1)])}. {', '.join(said['version'])}.", ""]
     text += ["CPU seconds of the whole process at equal error of the force (rms over the stroke, relative to the mean force),"]
     text += ["between the points of each code's Pareto front. `<`: already the cheapest run is better. In brackets:"]
     text += ["extrapolated by the slope of the last three points of the front. `>`: no run is that accurate, time of the most"]
@@ -501,6 +511,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--quick", action="store_true", help="two cases, coarse: a couple of minutes; results in the work folder")
     parser.add_argument("--case", default="", help="only cases with this in their name, as plastic-sticking")
+    parser.add_argument("--again", action="store_true", help="run what has been run as well")
     parser.add_argument("--work", type=pathlib.Path, default=None)
     parser.add_argument("--report", action="store_true", help="run nothing, evaluate what is there")
     parser.add_argument("--results", type=pathlib.Path, default=None)
@@ -538,13 +549,13 @@ def main():
         path = work / "-".join(key) / name / label / "record.json"
         if not path.exists() and (o.report or not programs[name]):
             continue
-        record = run(programs, work, *key, name, v, 10 * o.limit if code == "reference" else o.limit)
+        record = run(programs, work, *key, name, v, 10 * o.limit if code == "reference" else o.limit, None if o.report else o.again)
         (records[key] if code == "reference" else done).append(record)
     for key in chosen:
         usable = [r for r in records[key] if "cpu" in r]
         if key[1] == "none" or len(usable) == 2:
             references[key] = Reference(*key, usable)
-    report(done, references, programs, start_up(programs, work), results, picture)
+    report(done, references, start_up(programs, work, o.again), results, picture)
     print((results / "peers.md").read_text())
 
 

@@ -242,7 +242,7 @@ namespace axiforge::meshing
              std::map<std::string, double>{ { "Mesh.Algorithm", algorithm },
                                             { "Mesh.RecombinationAlgorithm", recombination },
                                             { "Mesh.RecombineAll", 1 },
-                                            { "Mesh.Smoothing", 10 },
+                                            { "Mesh.Smoothing", 3 }, // ours follows
                                             { "Mesh.ElementOrder", 1 },
                                             { "Mesh.MeshOnlyVisible", 0 },
                                             { "Mesh.MeshSizeFactor", 1 },
