@@ -31,6 +31,10 @@ namespace axiforge::meshing
     /// A vertex that moves by less, over the size of its cells, stays where it is.
     constexpr double at_rest = 1e-3;
 
+    /// An edge counts as straight whose middle is off that of its chord by less than this part of
+    /// it.
+    constexpr double straight = 1e-9;
+
 
     using Middles = std::map<Edge, Point>;
 
@@ -44,7 +48,24 @@ namespace axiforge::meshing
     }
 
 
-    void place_nodes(WorkpieceMesh &mesh, const Middles &middles, const unsigned int c)
+    /// Middle nodes of the edges of a cell, null where the edge is straight.
+    using CellMiddles = std::array<const Point *, 4>;
+
+    CellMiddles
+    middles_of_cell(const WorkpieceMesh &mesh, const Middles &middles, const unsigned int c)
+    {
+      CellMiddles result;
+      for (unsigned int e = 0; e < 4; ++e)
+        {
+          const auto &[a, b, m] = edges_of_cell[e];
+          const auto found      = middles.find(edge_of(mesh.cells[c][a], mesh.cells[c][b]));
+          result[e]             = found != middles.end() ? &found->second : nullptr;
+        }
+      return result;
+    }
+
+
+    void place_nodes(WorkpieceMesh &mesh, const CellMiddles &middles, const unsigned int c)
     {
       std::array<Point, 9> &x = mesh.cell_nodes[c];
       Point                 centre;
@@ -53,10 +74,10 @@ namespace axiforge::meshing
           x[v] = mesh.vertices[mesh.cells[c][v]];
           centre += -0.25 * x[v];
         }
-      for (const auto &[a, b, m] : edges_of_cell)
+      for (unsigned int e = 0; e < 4; ++e)
         {
-          const auto found = middles.find(edge_of(mesh.cells[c][a], mesh.cells[c][b]));
-          x[m]             = found != middles.end() ? found->second : x[a] + 0.5 * (x[b] - x[a]);
+          const auto &[a, b, m] = edges_of_cell[e];
+          x[m]                  = middles[e] ? *middles[e] : x[a] + 0.5 * (x[b] - x[a]);
           centre += 0.5 * x[m];
         }
       x[8] = centre;
@@ -232,8 +253,8 @@ namespace axiforge::meshing
     struct Samples
     {
       static constexpr unsigned int n = 8;
-      double                        d[n][9][2];
-      double                        place[n][2];
+      double                        d[9][2][n];
+      double                        place[2][n];
 
       static const Samples &get()
       {
@@ -253,7 +274,7 @@ namespace axiforge::meshing
               {
                 const double end = (c == 0 ? q % 2 : q / 2 % 2);
                 const double t   = q < 4 ? end : (end > 0.5 ? 1 - inside : inside);
-                place[q][c]      = t;
+                place[c][q]      = t;
                 u[c][0]          = (1 - t) * (1 - 2 * t);
                 u[c][1]          = 4 * t * (1 - t);
                 u[c][2]          = t * (2 * t - 1);
@@ -263,29 +284,31 @@ namespace axiforge::meshing
               }
             for (unsigned int a = 0; a < 9; ++a)
               {
-                d[q][a][0] = du[0][column[a]] * u[1][row[a]];
-                d[q][a][1] = u[0][column[a]] * du[1][row[a]];
+                d[a][0][q] = du[0][column[a]] * u[1][row[a]];
+                d[a][1][q] = u[0][column[a]] * du[1][row[a]];
               }
           }
       }
     };
 
 
-    /// Determinants at the samples, and |J|^2 / 2.
+    /// Determinants at the samples, and |J|^2 / 2. The loops over the samples are the inner ones:
+    /// the compiler puts them into vector registers.
     void
     sample(const std::array<Point, 9> &x, double (&det)[Samples::n], double (&half)[Samples::n])
     {
-      const Samples &samples = Samples::get();
+      const Samples &samples             = Samples::get();
+      double         J[2][2][Samples::n] = {};
+      for (unsigned int a = 0; a < 9; ++a)
+        for (unsigned int c = 0; c < 2; ++c)
+          for (unsigned int k = 0; k < 2; ++k)
+            for (unsigned int q = 0; q < Samples::n; ++q)
+              J[c][k][q] += x[a][c] * samples.d[a][k][q];
       for (unsigned int q = 0; q < Samples::n; ++q)
         {
-          double J[2][2] = { { 0, 0 }, { 0, 0 } };
-          for (unsigned int a = 0; a < 9; ++a)
-            for (unsigned int c = 0; c < 2; ++c)
-              for (unsigned int k = 0; k < 2; ++k)
-                J[c][k] += x[a][c] * samples.d[q][a][k];
-          det[q] = J[0][0] * J[1][1] - J[0][1] * J[1][0];
-          half[q] =
-              0.5 * (J[0][0] * J[0][0] + J[0][1] * J[0][1] + J[1][0] * J[1][0] + J[1][1] * J[1][1]);
+          det[q]  = J[0][0][q] * J[1][1][q] - J[0][1][q] * J[1][0][q];
+          half[q] = 0.5 * (J[0][0][q] * J[0][0][q] + J[0][1][q] * J[0][1][q] +
+                           J[1][0][q] * J[1][0][q] + J[1][1][q] * J[1][1][q]);
         }
     }
 
@@ -303,7 +326,7 @@ namespace axiforge::meshing
       const double left[2] = { c[0] - a[0], c[1] - a[1] }, right[2] = { d[0] - b[0], d[1] - b[1] };
       for (unsigned int q = 0; q < Samples::n; ++q)
         {
-          const double x = samples.place[q][0], y = samples.place[q][1];
+          const double x = samples.place[0][q], y = samples.place[1][q];
           const double J[4] = { bottom[0] + y * (top[0] - bottom[0]),
                                 left[0] + x * (right[0] - left[0]),
                                 bottom[1] + y * (top[1] - bottom[1]),
@@ -322,13 +345,23 @@ namespace axiforge::meshing
           , middles(boundary_middles(made))
           , cells(cells_of_vertices(mesh))
           , fixed(on_boundary(mesh))
+          , middles_of(mesh.cells.size())
           , curved(mesh.cells.size(), false)
           , due(mesh.vertices.size(), true)
       {
         for (unsigned int c = 0; c < mesh.cells.size(); ++c)
-          for (const auto &[a, b, m] : edges_of_cell)
-            if (middles.count(edge_of(mesh.cells[c][a], mesh.cells[c][b])))
-              curved[c] = true;
+          {
+            middles_of[c] = middles_of_cell(mesh, middles, c);
+            for (unsigned int e = 0; e < 4; ++e)
+              if (middles_of[c][e])
+                {
+                  const auto &[a, b, m] = edges_of_cell[e];
+                  const Point &start    = mesh.vertices[mesh.cells[c][a]],
+                              &end      = mesh.vertices[mesh.cells[c][b]];
+                  const Vector2 off     = *middles_of[c][e] - (start + 0.5 * (end - start));
+                  curved[c]             = curved[c] || off.norm() > straight * start.distance(end);
+                }
+          }
       }
 
       /// Moves the vertices that are due, and makes those due whose surroundings have moved. False:
@@ -355,7 +388,7 @@ namespace axiforge::meshing
       {
         if (!curved[c])
           return sample_straight(mesh, mesh.cells[c], det, half);
-        place_nodes(mesh, middles, c);
+        place_nodes(mesh, middles_of[c], c);
         sample(mesh.cell_nodes[c], det, half);
       }
 
@@ -369,7 +402,7 @@ namespace axiforge::meshing
             for (unsigned int q = 0; q < Samples::n; ++q)
               {
                 const double d = det[q] / half[q];
-                const double h = 0.5 * (d + std::sqrt(d * d + 4 * delta * delta));
+                const double h = delta > 0 ? 0.5 * (d + std::sqrt(d * d + 4 * delta * delta)) : d;
                 if (!(h > 0))
                   return 1e300;
                 sum += 1 / (h * h);
@@ -438,7 +471,8 @@ namespace axiforge::meshing
       std::vector<std::vector<unsigned int>> cells;
       std::vector<bool>                      fixed;
       double                                 delta = 0;
-      std::vector<bool>                      curved; ///< cells with an edge on the boundary
+      std::vector<CellMiddles>               middles_of;
+      std::vector<bool>                      curved; ///< cells with a curved edge
       std::vector<bool>                      due;    ///< to be moved in the next sweep
     };
   } // namespace
@@ -449,7 +483,7 @@ namespace axiforge::meshing
     const Middles middles = boundary_middles(made);
     made.mesh.cell_nodes.resize(made.mesh.cells.size());
     for (unsigned int c = 0; c < made.mesh.cells.size(); ++c)
-      place_nodes(made.mesh, middles, c);
+      place_nodes(made.mesh, middles_of_cell(made.mesh, middles, c), c);
   }
 
 
