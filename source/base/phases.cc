@@ -2,6 +2,8 @@
 #include <chrono>
 #include <cstring>
 #include <ctime>
+#include <list>
+#include <mutex>
 #include <vector>
 
 #include <fmt/format.h>
@@ -17,13 +19,44 @@ namespace axiforge
       double wall = 0, cpu = 0;
     };
 
-    /// CPU time is that of the whole process: threads of libraries count.
-    Seconds now()
+    /// Of the process: threads of libraries count.
+    Seconds now(const clockid_t clock = CLOCK_PROCESS_CPUTIME_ID)
     {
       timespec cpu;
-      clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
+      clock_gettime(clock, &cpu);
       const auto wall = std::chrono::steady_clock::now().time_since_epoch();
       return { std::chrono::duration<double>(wall).count(), cpu.tv_sec + 1e-9 * cpu.tv_nsec };
+    }
+  } // namespace
+
+
+  struct Phase::Beside::Row
+  {
+    const char   *name;
+    Seconds       sum, begun;
+    unsigned long calls;
+    clockid_t     clock;
+  };
+
+
+  namespace
+  {
+    // What ran and runs beside the program: both threads read and write it.
+    std::mutex                    beside;
+    std::list<Phase::Beside::Row> rows;
+    Phase::Beside::Row           *running = nullptr;
+
+
+    /// Without what runs beside.
+    Seconds now_here()
+    {
+      const std::lock_guard<std::mutex> lock(beside);
+      Seconds                           seconds = now();
+      for (const Phase::Beside::Row &row : rows)
+        seconds.cpu -= row.sum.cpu;
+      if (running)
+        seconds.cpu -= now(running->clock).cpu - running->begun.cpu;
+      return seconds;
     }
 
     /// The phases are few and change seldom: a tree of indices, searched by name.
@@ -40,15 +73,24 @@ namespace axiforge
     std::size_t       present = 0;
 
 
+    std::string table_row(const std::string  &name,
+                          const unsigned long calls,
+                          const Seconds      &seconds,
+                          const double        own)
+    {
+      return fmt::format("| {:<38} | {:>8} | {:>9.3f} | {:>9.3f} | {:>5.1f} % | {:>9.3f} |\n", name,
+                         calls, seconds.wall, seconds.cpu, 100 * seconds.wall / nodes[0].sum.wall,
+                         own);
+    }
+
+
     void add_rows(const std::size_t n, const unsigned int depth, std::string &text)
     {
       const Node &node = nodes[n];
       Seconds     own  = node.sum;
       for (const std::size_t i : node.inside)
         own.wall -= nodes[i].sum.wall;
-      text += fmt::format("| {:<38} | {:>8} | {:>9.3f} | {:>9.3f} | {:>5.1f} % | {:>9.3f} |\n",
-                          std::string(2 * depth, ' ') + node.name, node.calls, node.sum.wall,
-                          node.sum.cpu, 100 * node.sum.wall / nodes[0].sum.wall, own.wall);
+      text += table_row(std::string(2 * depth, ' ') + node.name, node.calls, node.sum, own.wall);
       for (const std::size_t i : node.inside)
         add_rows(i, depth + 1, text);
     }
@@ -78,18 +120,47 @@ namespace axiforge
         nodes[present].inside.push_back(child);
       }
     present            = child;
-    nodes[child].begun = now();
+    nodes[child].begun = now_here();
     ++nodes[child].calls;
   }
 
 
   void Phase::leave()
   {
-    const Seconds end  = now();
+    const Seconds end  = now_here();
     Node         &node = nodes[present];
     node.sum.wall += end.wall - node.begun.wall;
     node.sum.cpu += end.cpu - node.begun.cpu;
     present = node.parent;
+  }
+
+
+  Phase::Beside::Beside(const char *name)
+  {
+    if (!measured)
+      return;
+    const std::lock_guard<std::mutex> lock(beside);
+    for (Row &known : rows)
+      if (std::strcmp(known.name, name) == 0)
+        row = &known;
+    if (!row)
+      row = &rows.emplace_back(Row{ name, {}, {}, 0, {} });
+    pthread_getcpuclockid(pthread_self(), &row->clock);
+    row->begun = now(row->clock);
+    ++row->calls;
+    running = row;
+  }
+
+
+  Phase::Beside::~Beside()
+  {
+    if (!row)
+      return;
+    const std::lock_guard<std::mutex> lock(beside);
+    const Seconds                     end = now(row->clock);
+    row->sum.wall += end.wall - row->begun.wall;
+    row->sum.cpu += end.cpu - row->begun.cpu;
+    running = nullptr;
   }
 
 
@@ -104,6 +175,9 @@ namespace axiforge
     text += fmt::format("|:{:-<38}-|-{:->8}:|-{:->9}:|-{:->9}:|-{:->7}:|-{:->9}:|\n", "", "", "",
                         "", "", "");
     add_rows(0, 0, text);
+    const std::lock_guard<std::mutex> lock(beside);
+    for (const Beside::Row &row : rows)
+      text += table_row(std::string("beside: ") + row.name, row.calls, row.sum, row.sum.wall);
     return text;
   }
 } // namespace axiforge

@@ -3,7 +3,6 @@
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/fe/mapping_fe_field.h>
-#include <deal.II/numerics/data_out.h>
 
 #include <axiforge/base/collective.h>
 #include <axiforge/base/errors.h>
@@ -14,7 +13,7 @@ namespace axiforge::output
 {
   using namespace dealii;
 
-  void write_vtu(const State &state, const std::string &path)
+  std::shared_ptr<DataOut<2>> collect_fields(const State &state)
   {
     const auto &history = state.cell_history;
 
@@ -58,7 +57,7 @@ namespace axiforge::output
         2, DataComponentInterpretation::component_is_part_of_vector);
     const std::vector<Interpretation> scalars(2, DataComponentInterpretation::component_is_scalar);
 
-    DataOut<2>            out;
+    const auto            out = std::make_shared<DataOut<2>>();
     DataOutBase::VtkFlags flags;
     flags.write_higher_order_cells = true;
     flags.time                     = state.time;
@@ -66,14 +65,14 @@ namespace axiforge::output
     flags.print_date_and_time      = false; // the same run gives the same bytes
     // zlib would take a third off the file and more time than all the rest of it.
     flags.compression_level = DataOutBase::VtkFlags::no_compression;
-    out.set_flags(flags);
+    out->set_flags(flags);
     const auto add = [&](const Field &field, const std::string &first, const std::string &second) {
-      out.add_data_vector(state.flow_dofs, field, std::vector<std::string>{ first, second },
-                          scalars);
+      out->add_data_vector(state.flow_dofs, field, std::vector<std::string>{ first, second },
+                           scalars);
     };
     state.velocity.update_ghost_values();
-    out.add_data_vector(state.flow_dofs, state.velocity, std::vector<std::string>(2, "velocity"),
-                        vector);
+    out->add_data_vector(state.flow_dofs, state.velocity, std::vector<std::string>(2, "velocity"),
+                         vector);
     add(strain, "strain", "strain_rate");
     add(stress, "effective_stress", "mean_stress");
     add(normal, "stress_rr", "stress_zz");
@@ -82,19 +81,28 @@ namespace axiforge::output
     add(contact, "contact_pressure", "friction_traction");
 
     const MappingFEField<2, 2, Field> mapping(state.flow_dofs, state.position);
-    out.build_patches(mapping, 2, DataOut<2>::curved_inner_cells);
+    out->build_patches(mapping, 2, DataOut<2>::curved_inner_cells);
+    out->clear_input_data_references();
+    return out;
+  }
 
+
+  void write_vtu(const DataOut<2> &fields, const std::string &path)
+  {
+    std::ostringstream text;
+    fields.write_vtu(text);
+    write_file_atomically(path, text.str());
+  }
+
+
+  void write_vtu_in_parallel(const DataOut<2>  &fields,
+                             const std::string &path,
+                             const MPI_Comm     communicator)
+  {
     // Under another name first: a run that is killed leaves no half-written file.
-    if (Utilities::MPI::n_mpi_processes(state.communicator) == 1)
-      {
-        std::ostringstream text;
-        out.write_vtu(text);
-        write_file_atomically(path, text.str());
-        return;
-      }
     const std::string temporary = path + ".part";
-    out.write_vtu_in_parallel(temporary, state.communicator);
-    on_first_rank(state.communicator, [&] {
+    fields.write_vtu_in_parallel(temporary, communicator);
+    on_first_rank(communicator, [&] {
       if (std::rename(temporary.c_str(), path.c_str()) != 0)
         throw ComputationError("The file " + path + " can't be written. Is the disk full?");
     });

@@ -38,6 +38,19 @@ namespace axiforge::output
   }
 
 
+  static void write_collections(const std::string &folder, const ResultsProgress &done)
+  {
+    std::ostringstream fields, tools;
+    dealii::DataOutBase::write_pvd_record(fields, done.field_files);
+    write_file_atomically(folder + "/fields.pvd", fields.str());
+    if (!done.tool_files.empty())
+      {
+        dealii::DataOutBase::write_pvd_record(tools, done.tool_files);
+        write_file_atomically(folder + "/tools.pvd", tools.str());
+      }
+  }
+
+
   Results::Results(const scene::Scene    &scene,
                    const State           &state,
                    const std::string     &directory,
@@ -79,7 +92,7 @@ namespace axiforge::output
       for (const auto &file : *list)
         kept.insert(std::filesystem::path(file.second).filename().string());
     if (!kept.empty())
-      write_collections();
+      write_collections(folder, done);
     std::error_code ignored;
     for (const auto &entry : std::filesystem::directory_iterator(folder + "/fields"))
       if (entry.path().extension() == ".vtu" && !kept.count(entry.path().filename().string()))
@@ -130,29 +143,45 @@ namespace axiforge::output
     done.last_fields_stroke  = scene.stroke(state.time);
     done.last_fields_time    = state.time;
     const std::string fields = fmt::format("fields/workpiece_{:05}.vtu", state.step);
-    write_vtu(state, folder + "/" + fields);
-    done.field_files.emplace_back(state.time, fields);
-    on_first_rank(state.communicator, [&] {
-      if (!scene.tools.empty())
-        {
-          const std::string tools = fmt::format("fields/tools_{:05}.vtu", state.step);
-          write_tools(scene, state.time, folder + "/" + tools);
-          done.tool_files.emplace_back(state.time, tools);
-        }
-      write_collections();
-    });
+    const std::string tools =
+        scene.tools.empty() ? "" : fmt::format("fields/tools_{:05}.vtu", state.step);
+    const auto collected = collect_fields(state);
+    const auto now_done  = [&] {
+      done.field_files.emplace_back(state.time, fields);
+      if (!tools.empty())
+        done.tool_files.emplace_back(state.time, tools);
+    };
+    const auto write_rest = [&scene = scene, folder = folder, tools,
+                             time = state.time](const ResultsProgress &list) {
+      if (!tools.empty())
+        write_tools(scene, time, folder + "/" + tools);
+      write_collections(folder, list);
+    };
+    if (dealii::Utilities::MPI::n_mpi_processes(state.communicator) == 1)
+      {
+        now_done();
+        writer.start("files of the fields",
+                     [collected, path = folder + "/" + fields, write_rest, list = done] {
+                       write_vtu(*collected, path);
+                       write_rest(list);
+                     });
+        return;
+      }
+    write_vtu_in_parallel(*collected, folder + "/" + fields, state.communicator);
+    now_done();
+    on_first_rank(state.communicator, [&] { write_rest(done); });
   }
 
 
-  void Results::write_collections() const
+  void Results::finish()
   {
-    std::ostringstream fields, tools;
-    dealii::DataOutBase::write_pvd_record(fields, done.field_files);
-    write_file_atomically(folder + "/fields.pvd", fields.str());
-    if (!done.tool_files.empty())
-      {
-        dealii::DataOutBase::write_pvd_record(tools, done.tool_files);
-        write_file_atomically(folder + "/tools.pvd", tools.str());
-      }
+    writer.wait();
+  }
+
+
+  const ResultsProgress &Results::progress()
+  {
+    finish();
+    return done;
   }
 } // namespace axiforge::output

@@ -124,9 +124,9 @@ namespace axiforge::process
   }
 
 
-  void Checkpointing::enter(const scene::Scene    &new_scene,
-                            const ChainProgress   &new_chain,
-                            const output::Results &new_results)
+  void Checkpointing::enter(const scene::Scene  &new_scene,
+                            const ChainProgress &new_chain,
+                            output::Results     &new_results)
   {
     scene     = &new_scene;
     chain     = &new_chain;

@@ -152,9 +152,11 @@ namespace axiforge::process
       {
         const std::string advice = checkpoints.rescue(state, record);
         results.write_fields(state); // what there is stays, up to the last good step
+        results.finish();
         throw ComputationError(error.what() + advice);
       }
     results.write_fields(state);
+    results.finish();
     progress.end(state, sum, solver->linear_system().analyse_seconds, results.directory());
   }
 } // namespace axiforge::process

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <deal.II/numerics/data_out.h>
+
 #include <axiforge/base/atomic_file.h>
+#include <axiforge/base/background.h>
 #include <axiforge/scene/scene.h>
 #include <axiforge/state/checkpoint.h>
 #include <axiforge/state/state.h>
@@ -25,8 +29,8 @@ namespace axiforge::output
   /**
    * Writes the folder of a run: `input.prm`, `parameters.prm`, `versions.txt`, `history.csv` (one
    * row per accepted step), VTU files in `fields/` with `fields.pvd` and `tools.pvd`. Every file
-   * appears whole or not at all; a row of the history is written at once. All functions are
-   * collective.
+   * appears whole or not at all; a row of the history is written at once, the files of the fields
+   * beside the next steps if there is but one rank. All functions are collective.
    */
   class Results
   {
@@ -45,30 +49,30 @@ namespace axiforge::output
     /// Writes the row of the step, and the fields if they are due.
     void write(const State &state, const StepRecord &record);
 
-    /// Writes the fields of the present state unless they are there.
+    /// Writes the fields of the present state unless they are there. On one rank the files may
+    /// appear later, and @throws what went wrong with those before.
     void write_fields(const State &state);
+
+    /// Waits for the files of the fields. @throws what went wrong with them
+    void finish();
 
     const std::string &directory() const
     {
       return folder;
     }
 
-    /// How far the folder has come.
-    const ResultsProgress &progress() const
-    {
-      return done;
-    }
+    /// How far the folder has come: as far as this says, its files are there. @throws like finish()
+    const ResultsProgress &progress();
 
   private:
-    void start_folder(const Provenance &provenance);
-    void continue_folder(const State &state, const Provenance &provenance);
-    bool fields_due(const State &state, const StepRecord &record) const;
-    void write_collections() const;
-
+    void                   start_folder(const Provenance &provenance);
+    void                   continue_folder(const State &state, const Provenance &provenance);
+    bool                   fields_due(const State &state, const StepRecord &record) const;
     const scene::Scene    &scene;
     std::string            folder;
     std::optional<CsvFile> history; ///< first rank only
     ResultsProgress        done;    ///< rows and files of the tools: first rank only
+    Background             writer;
   };
 
   /// Makes the folder if it is not there. First rank only. @throws InputError
@@ -85,8 +89,17 @@ namespace axiforge::output
   std::vector<double>
   history_row(const scene::Scene &scene, const StepRecord &record, double wall_seconds);
 
-  /// Writes the fields of the state in its present configuration as one VTU file. Collective.
-  void write_vtu(const State &state, const std::string &path);
+  /// The fields of the state in its present configuration; no reference to the state remains.
+  /// Collective.
+  std::shared_ptr<dealii::DataOut<2>> collect_fields(const State &state);
+
+  /// Writes all fields as one VTU file, without any communication: of a single rank.
+  void write_vtu(const dealii::DataOut<2> &fields, const std::string &path);
+
+  /// Writes the fields of all ranks as one VTU file. Collective.
+  void write_vtu_in_parallel(const dealii::DataOut<2> &fields,
+                             const std::string        &path,
+                             MPI_Comm                  communicator);
 
   /// Writes the outlines of the tools at a time as a VTU file of lines (first rank only).
   void write_tools(const scene::Scene &scene, double time, const std::string &path);

@@ -30,8 +30,7 @@ namespace axiforge::process
     ~Checkpointing();
 
     /// From now on checkpoints are of this operation. The arguments have to stay.
-    void
-    enter(const scene::Scene &scene, const ChainProgress &chain, const output::Results &results);
+    void enter(const scene::Scene &scene, const ChainProgress &chain, output::Results &results);
 
     /**
      * After an accepted step whose row is written: writes if it is due. Collective.
@@ -57,13 +56,13 @@ namespace axiforge::process
   private:
     void write(const State &state, const StepRecord &record);
 
-    std::string            folder, parameters;
-    const scene::Scene    *scene   = nullptr;
-    const ChainProgress   *chain   = nullptr;
-    const output::Results *results = nullptr;
-    dealii::Timer          since_last;
-    unsigned int           last_step = static_cast<unsigned int>(-1); ///< of the last checkpoint
-    std::string            last_kept; ///< what the last checkpoint is of, in words
+    std::string          folder, parameters;
+    const scene::Scene  *scene   = nullptr;
+    const ChainProgress *chain   = nullptr;
+    output::Results     *results = nullptr;
+    dealii::Timer        since_last;
+    unsigned int         last_step = static_cast<unsigned int>(-1); ///< of the last checkpoint
+    std::string          last_kept; ///< what the last checkpoint is of, in words
   };
 
   /**
