@@ -39,8 +39,8 @@ namespace
 
 TEST(Background, JobsComeOneAfterAnotherAndAreDoneAtTheEnd)
 {
-  std::vector<int>  order;
-  std::atomic<int>  at_work(0), most(0);
+  std::vector<int> order;
+  std::atomic<int> at_work(0), most(0);
   {
     Background background;
     for (int i = 0; i < 5; ++i)

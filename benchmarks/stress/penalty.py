@@ -31,8 +31,8 @@ def attainable(program, method, penalty, cells):
 
 def short(session):
     """The ends of the sweep: what keeps its digits, and what loses as many as lambda has."""
-    def solve(method, penalty, tolerance):
-        return session.program.run({**scene(method, penalty, tolerance, cells=6), "Flow solver/Most iterations": 40})
+    def solve(method, penalty, tolerance, stroke=0.25):
+        return session.program.run({**scene(method, penalty, tolerance, stroke, cells=6), "Flow solver/Most iterations": 40})
 
     exact = solve("iterated", 1e8, 1e-12).forces()[0]
     for method, penalty, tolerance, error in (
@@ -43,6 +43,10 @@ def short(session):
         off = outcome.forces()[0] / exact - 1 if outcome.done else math.inf
         session.check(abs(off) < error, f"{method} penalty {penalty:.0e} at {tolerance:.0e}: force off by {off:.1e}")
     session.check(not solve("classical", 1e8, 1e-10).done, "the classical penalty 1e8 cannot be solved to 1e-10")
+    # Steps after the first have the motion of the cells in the tangent.
+    for method in METHODS:
+        outcome = solve(method, 1e6, 1e-5, stroke=2)
+        session.check(outcome.done, f"eight steps with the {method} penalty 1e6: {outcome.reason}")
     return [], {}
 
 
@@ -112,6 +116,8 @@ def run(session):
                     figures = [outcome.iterations, outcome.last["force_upper_N"] / whole - 1,
                                outcome.last["relative_volume_change"], outcome.cpu]
                 ends = "40 steps" if outcome.done else f"after {len(outcome.rows)} steps"
+                if 4 <= exponent <= 6:
+                    session.check(outcome.done, f"40 steps with the {method} penalty 1e{exponent} at {tolerance:.0e}: {outcome.reason}")
                 over_run.add(method, f"1e{exponent}", f"{tolerance:.0e}", ends, *figures, outcome.reason)
     return [first, over_run], {"first_step": first, "whole_run": over_run}
 

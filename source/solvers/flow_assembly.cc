@@ -360,9 +360,10 @@ namespace axiforge::solvers
   {
     const Phase phase("assembly");
     // Far from the solution, and in a first step, which starts from nothing, the motion of an
-    // iterate tells nothing.
+    // iterate tells nothing. With the classical penalty p follows v at once, so that nothing on the
+    // right-hand side balances the J^T of the matrix: it would be off by lambda times the motion.
     const bool moving = theta > 0 && state.step > 0 && norms.residual < near_solution &&
-                        norms.divergence < near_solution;
+                        norms.divergence < near_solution && !scene.flow.classical();
     index_frames();
 
     system->clear();
