@@ -71,6 +71,11 @@ if(TARGET axiforge AND PYTHON3_PROGRAM)
         ${group} --short)
     set_tests_properties(stress_${group} PROPERTIES LABELS case TIMEOUT 300)
   endforeach()
+
+  # The tables of doc/stability.md are those of the results.
+  add_test(NAME documentation_tables
+    COMMAND ${PYTHON3_PROGRAM} ${CMAKE_SOURCE_DIR}/benchmarks/stress/summary.py --check)
+  set_tests_properties(documentation_tables PROPERTIES LABELS case)
 endif()
 
 # What the tests labelled "quick" need, and no more: the Debug build makes this target. A test without a
