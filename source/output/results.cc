@@ -138,6 +138,7 @@ namespace axiforge::output
   {
     if (scene.output.format != "vtu" || done.last_fields_step == state.step)
       return;
+    finish(); // what went wrong with the files before is not to hide behind these
     const Phase phase("fields");
     done.last_fields_step    = state.step;
     done.last_fields_stroke  = scene.stroke(state.time);
@@ -175,7 +176,18 @@ namespace axiforge::output
 
   void Results::finish()
   {
-    writer.wait();
+    try
+      {
+        writer.wait();
+      }
+    catch (...)
+      {
+        // One job at most is under way, and its files are the last of the lists.
+        done.field_files.pop_back();
+        if (!scene.tools.empty())
+          done.tool_files.pop_back();
+        throw;
+      }
   }
 
 

@@ -205,6 +205,14 @@ namespace axiforge::process
   {
     try
       {
+        results->finish();
+      }
+    catch (const std::exception &)
+      {
+        // Files of fields that could not be written are no reason to lose the state.
+      }
+    try
+      {
         // If the step's row could not be written, its state would leave a gap: the checkpoint
         // before it stays.
         if (state.step > 0 && last_step != state.step &&
