@@ -14,6 +14,8 @@ import pathlib
 import re
 import sys
 
+from tables import markdown_rows
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 RESULTS = ROOT / "benchmarks" / "results" / "stress"
 DOCUMENT = ROOT / "doc" / "stability.md"
@@ -24,22 +26,19 @@ def read(name):
         return list(csv.DictReader(file))
 
 
-def short(value):
-    """A number as it stands in the document; text as it is."""
-    try:
-        number = float(value)
-    except ValueError:
-        return value
-    return "0" if number == 0 else f"{number:.1e}" if abs(number) < 0.01 or abs(number) >= 1e4 else f"{number:.4g}"
+def tables_of(group):
+    """The tables of a group's Markdown file, as lists of lines."""
+    text = (RESULTS / (group + ".md")).read_text()
+    return [table.rstrip("\n").split("\n") for table in re.findall(r"(?:^\|.*\n)+", text, re.MULTILINE)]
 
 
-def table(columns, rows):
-    lines = ["| " + " | ".join(columns) + " |", "|" + "---|" * len(columns)]
-    return lines + ["| " + " | ".join(str(x) for x in row) + " |" for row in rows]
+def number(text):
+    """What a cell of a .csv file says; nothing where there is nothing."""
+    return float(text) if text not in ("", "-") else None
 
 
 def largest(rows, column):
-    return max((abs(float(row[column])) for row in rows if row[column] not in ("", "-")), default=None)
+    return max((abs(number(row[column])) for row in rows if number(row[column]) is not None), default=None)
 
 
 def penalty_first_step():
@@ -49,12 +48,12 @@ def penalty_first_step():
         iterated, static, classical = (rows[(method, value)] for method in ("iterated", "static", "classical"))
         solved = "residual can be solved to"
         result.append([
-            value, "refused" if iterated[solved] == "-" else iterated[solved], short(iterated["error of the force"]),
-            static[solved], short(static["error of the force"]), short(static["power of the divergence"]),
+            value, "refused" if iterated[solved] == "-" else iterated[solved], number(iterated["error of the force"]),
+            static[solved], number(static["error of the force"]), number(static["power of the divergence"]),
             "not to 1e-3" if classical[solved] == "-" else classical[solved],
-            "all" if classical[solved] == "-" else classical["digits lost"], short(classical["error of the force"])])
-    return table([r"$\lambda$", "iterated: solved to", "error", "static: solved to", "error", "power of the divergence",
-                  "classical: solved to", "digits lost", "error"], result)
+            "all" if classical[solved] == "-" else classical["digits lost"], number(classical["error of the force"])])
+    return markdown_rows([r"$\lambda$", "iterated: solved to", "error", "static: solved to", "error", "power of the divergence",
+                          "classical: solved to", "digits lost", "error"], result)
 
 
 def penalty_whole_run():
@@ -69,9 +68,9 @@ def penalty_whole_run():
         static = rows[("static", value, "1e-08")]
         result.append([value] + [iterations(method, value, tolerance) for tolerance in ("1e-05", "1e-08")
                                  for method in ("iterated", "static", "classical")]
-                      + [short(static["error of the last force"]), short(static["volume change"])])
-    return table([r"$\lambda$", "iterations at 1e-5: iterated", "static", "classical", "at 1e-8: iterated", "static",
-                  "classical", "error of the last force, static", "volume change, static"], result)
+                      + [number(static["error of the last force"]), number(static["volume change"])])
+    return markdown_rows([r"$\lambda$", "iterations at 1e-5: iterated", "static", "classical", "at 1e-8: iterated", "static",
+                          "classical", "error of the last force, static", "volume change, static"], result)
 
 
 def scaling_units():
@@ -82,10 +81,10 @@ def scaling_units():
         binary = [row for row in mine if "2^" in row["units"]]
         decimal = [row for row in mine if row not in binary and row["units"] != "own"]
         numbers = sorted({int(row["iterations"]) for row in mine})
-        result.append([scene, len(decimal), short(largest(decimal, "largest difference")), len(binary),
-                       short(largest(binary, "largest difference")), " to ".join(str(n) for n in dict.fromkeys((numbers[0], numbers[-1])))])
-    return table(["scene", "units of 1e±3, 1e±6", "largest difference of any answer", "units of 2^±10, 2^±20",
-                  "largest difference", "iterations"], result)
+        result.append([scene, len(decimal), largest(decimal, "largest difference"), len(binary),
+                       largest(binary, "largest difference"), " to ".join(str(n) for n in dict.fromkeys((numbers[0], numbers[-1])))])
+    return markdown_rows(["scene", "units of 1e±3, 1e±6", "largest difference of any answer", "units of 2^±10, 2^±20",
+                          "largest difference", "iterations"], result)
 
 
 def invariance_changes():
@@ -96,9 +95,9 @@ def invariance_changes():
         for tolerance in ("1e-05", "1e-08"):
             mine = [row for row in rows if row["change"] == change and row["tolerance"] == tolerance]
             failed = [row for row in mine if row["ends"] != "done"]
-            line.append(f"{len(failed)} of {len(mine)}: {failed[0]['ends']}" if failed else short(largest(mine, "largest difference")))
+            line.append(f"{len(failed)} of {len(mine)}: {failed[0]['ends']}" if failed else largest(mine, "largest difference"))
         result.append(line)
-    return table(["change", "largest difference of any answer, tolerance 1e-5", "tolerance 1e-8"], result)
+    return markdown_rows(["change", "largest difference of any answer, tolerance 1e-5", "tolerance 1e-8"], result)
 
 
 def steps():
@@ -109,29 +108,24 @@ def steps():
         done = [row for row in mine if row["ends"] == "done"]
         free, rubbed = ([row for row in done if (row["friction"] == "none") == none] for none in (True, False))
         each = [float(row["iterations per step"]) for row in done]
-        result.append([step, f"{len(done)} of {len(mine)}", sum(int(row["repeats"]) for row in mine), f"{min(each):.1f} to {max(each):.1f}"]
-                      + [short(largest(some, "error of the " + what)) for what in ("work", "radius") for some in (free, rubbed)]
-                      + [short(largest(done, "volume change"))])
-    return table(["step", "done", "repeats", "iterations per step", "error of the work, frictionless", "with friction",
-                  "error of the radius, frictionless", "with friction", "volume change"], result)
+        result.append([step, f"{len(done)} of {len(mine)}", sum(int(row["repeats"]) for row in mine), f"{min(each):.1f} to {max(each):.1f}" if each else None]
+                      + [largest(some, "error of the " + what) for what in ("work", "radius") for some in (free, rubbed)]
+                      + [largest(done, "volume change")])
+    return markdown_rows(["step", "done", "repeats", "iterations per step", "error of the work, frictionless", "with friction",
+                          "error of the radius, frictionless", "with friction", "volume change"], result)
 
 
 def regularisation():
-    rows = {(row["m"], row["regularisation"], row["friction"], row["tolerance"]): row for row in read("material_regularisation")}
-    frictions = list(dict.fromkeys(key[2] for key in rows))
-    result = []
-    for m in dict.fromkeys(key[0] for key in rows):
-        values = list(dict.fromkeys(key[1] for key in rows))
-        for value in values:
-            line = [m, value]
-            for tolerance in ("1e-05", "1e-08"):
-                line.append(" / ".join("%.3g" % (int(rows[(m, value, friction, tolerance)]["iterations"]) / 10) for friction in frictions))
-            for friction in frictions:
-                force, exact = (float(rows[(m, v, friction, "1e-08")]["last force [N]"]) for v in (value, values[-1]))
-                line.append(short(force / exact - 1))
-            result.append(line)
-    return table(["m", "regularisation", "iterations per step at a tolerance of 1e-5: SMM / shear / sticking", "at 1e-8",
-                  "error of the force: SMM 0.5", "shear 0.3", "sticking"], result)
+    """The table of material.md, whose errors have more digits than the .csv file, with the frictions side by side."""
+    rows = {}
+    for line in tables_of("material")[1][2:]:
+        m, friction, value, at_5, _, at_8, error = [cell.strip() for cell in line.strip("|").split("|")][:7]
+        rows.setdefault((m, value), []).append((friction, at_5, at_8, error))
+    frictions = [friction for friction, *_ in next(iter(rows.values()))]
+    assert all([friction for friction, *_ in each] == frictions for each in rows.values())
+    result = [[m, value, *(" / ".join(column) for column in list(zip(*each))[1:3]), *list(zip(*each))[3]] for (m, value), each in rows.items()]
+    return markdown_rows(["m", "regularisation", "iterations per step at a tolerance of 1e-5: SMM / shear / sticking", "at 1e-8",
+                          "error of the force: SMM 0.5", "shear 0.3", "sticking"], result)
 
 
 DIGESTS = {function.__name__: function for function in
@@ -141,9 +135,8 @@ DIGESTS = {function.__name__: function for function in
 def made(name):
     if name in DIGESTS:
         return DIGESTS[name]()
-    file, number = name.split()
-    tables = re.findall(r"(?:^\|.*\n)+", (RESULTS / (file + ".md")).read_text(), re.MULTILINE)
-    return tables[int(number) - 1].rstrip("\n").split("\n")
+    file, place = name.split()
+    return tables_of(file)[int(place) - 1]
 
 
 def main():
@@ -155,7 +148,9 @@ def main():
     def replaced(match):
         return match.group(1) + "\n".join(made(match.group(2))) + "\n"
 
-    after = re.sub(r"(<!-- table: (.+?) -->\n)(?:\|.*\n)+", replaced, before)
+    after, n_tables = re.subn(r"(<!-- table: (.+?) -->\n)(?:\|.*\n)+", replaced, before)
+    if n_tables != before.count("<!-- table:"):
+        sys.exit("doc/stability.md has a line <!-- table: NAME --> that no table follows")
     if after == before:
         return
     if arguments.check:

@@ -28,6 +28,12 @@ def plain(value):
     return str(value)
 
 
+def markdown_rows(columns, rows):
+    """Lines of a table in Markdown."""
+    lines = ["| " + " | ".join(columns) + " |", "|" + "---|" * len(columns)]
+    return lines + ["| " + " | ".join(plain(value).replace("|", "/") for value in row) + " |" for row in rows]
+
+
 class Table:
     """Rows for the Markdown file; all_rows, if there are more of them, for the CSV file."""
 
@@ -44,10 +50,7 @@ class Table:
         lines = [f"## {self.title}", ""]
         if self.note:
             lines += [self.note, ""]
-        lines.append("| " + " | ".join(self.columns) + " |")
-        lines.append("|" + "---|" * len(self.columns))
-        lines += ["| " + " | ".join(plain(value).replace("|", "/") for value in row) + " |" for row in self.rows]
-        return "\n".join(lines) + "\n"
+        return "\n".join(lines + markdown_rows(self.columns, self.rows)) + "\n"
 
 
 def stamp(program, seconds):

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include <thread>
+#include <sched.h>
 
 #include <axiforge/base/background.h>
 #include <axiforge/base/phases.h>
@@ -9,15 +9,26 @@ namespace axiforge
   void Background::start(const char *name, std::function<void()> work)
   {
     wait();
-    if (std::thread::hardware_concurrency() < 2)
+    if (has_core())
+      job = std::async(std::launch::async, [name, work = std::move(work)] {
+        const Phase::Beside beside(name);
+        work();
+      });
+    else
       {
-        const Phase phase(name);
-        return work();
+        job = std::async(std::launch::deferred, [name, work = std::move(work)] {
+          const Phase phase(name);
+          work();
+        });
+        job.wait(); // does it, and keeps what it throws
       }
-    job = std::async(std::launch::async, [name, work = std::move(work)] {
-      const Phase::Beside beside(name);
-      work();
-    });
+  }
+
+
+  bool Background::has_core()
+  {
+    cpu_set_t cores;
+    return sched_getaffinity(0, sizeof(cores), &cores) == 0 && CPU_COUNT(&cores) > 1;
   }
 
 

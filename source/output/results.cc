@@ -138,8 +138,17 @@ namespace axiforge::output
   {
     if (scene.output.format != "vtu" || done.last_fields_step == state.step)
       return;
-    finish(); // what went wrong with the files before is not to hide behind these
     const Phase phase("fields");
+    // What went wrong with the files before is told, but these are written first.
+    std::exception_ptr earlier;
+    try
+      {
+        finish();
+      }
+    catch (...)
+      {
+        earlier = std::current_exception();
+      }
     done.last_fields_step    = state.step;
     done.last_fields_stroke  = scene.stroke(state.time);
     done.last_fields_time    = state.time;
@@ -166,11 +175,15 @@ namespace axiforge::output
                        write_vtu(*collected, path);
                        write_rest(list);
                      });
-        return;
       }
-    write_vtu_in_parallel(*collected, folder + "/" + fields, state.communicator);
-    now_done();
-    on_first_rank(state.communicator, [&] { write_rest(done); });
+    else
+      {
+        write_vtu_in_parallel(*collected, folder + "/" + fields, state.communicator);
+        now_done();
+        on_first_rank(state.communicator, [&] { write_rest(done); });
+      }
+    if (earlier)
+      std::rethrow_exception(earlier);
   }
 
 
@@ -186,6 +199,7 @@ namespace axiforge::output
         done.field_files.pop_back();
         if (!scene.tools.empty())
           done.tool_files.pop_back();
+        done.last_fields_step = ResultsProgress().last_fields_step; // they may be tried again
         throw;
       }
   }

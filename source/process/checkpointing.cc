@@ -137,8 +137,9 @@ namespace axiforge::process
 
   void Checkpointing::write(const State &state, const StepRecord &record)
   {
-    const Phase       phase("checkpoint");
-    const std::string path = folder + "/checkpoint.axi";
+    const Phase            phase("checkpoint");
+    const std::string      path     = folder + "/checkpoint.axi";
+    const ResultsProgress &progress = results->progress(); // throws before anything is touched
     on_first_rank(state.communicator, [&] {
       // At any moment there is a whole file called checkpoint.axi: the old one gets a second name
       // before the new one takes its place.
@@ -153,7 +154,7 @@ namespace axiforge::process
       if (!error)
         std::filesystem::rename(link, old, error);
     });
-    save_checkpoint(state, { parameters, record, results->progress(), *chain }, path);
+    save_checkpoint(state, { parameters, record, progress, *chain }, path);
     last_step = state.step;
     last_kept = fmt::format(
         "after step {}{}", state.step,

@@ -147,16 +147,23 @@ namespace axiforge::process
           }
         chain.present.ended_by = ended_by(scene, record);
         checkpoints.at_end(state, record);
+        results.write_fields(state);
+        results.finish();
       }
     catch (const ComputationError &error)
       {
         const std::string advice = checkpoints.rescue(state, record);
-        results.write_fields(state); // what there is stays, up to the last good step
-        results.finish();
+        try
+          {
+            results.write_fields(state); // what there is stays, up to the last good step
+            results.finish();
+          }
+        catch (const ComputationError &)
+          {
+            // What went wrong first is what has to be told.
+          }
         throw ComputationError(error.what() + advice);
       }
-    results.write_fields(state);
-    results.finish();
     progress.end(state, sum, solver->linear_system().analyse_seconds, results.directory());
   }
 } // namespace axiforge::process

@@ -72,8 +72,9 @@ namespace axiforge::process
       if (limits.time_step > 0)
         return limits.time_step;
       // What a target accuracy allows may be longer than the usual step, but not without limit.
-      const double factor = scene.accuracy.driven() && state.step > 0 ? largest_driven : 1;
-      return factor * limits.largest_reduction * height_of(state) / fastest(scene, state.time);
+      const double factor          = scene.accuracy.driven() && state.step > 0 ? largest_driven : 1;
+      const auto [lowest, highest] = vertical_extent(state);
+      return factor * limits.largest_reduction * (highest - lowest) / fastest(scene, state.time);
     }
 
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <tuple>
+
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
 
@@ -51,13 +53,27 @@ namespace axiforge
   } // namespace
 
 
+  std::pair<double, double> vertical_extent(const State &state)
+  {
+    double lowest = 1e300, highest = -1e300;
+    for (const auto &nodes : state.tables.cells)
+      for (const unsigned int node : nodes)
+        {
+          const double z = state.node_position(node)[1];
+          lowest         = std::min(lowest, z);
+          highest        = std::max(highest, z);
+        }
+    return { dealii::Utilities::MPI::min(lowest, state.communicator),
+             dealii::Utilities::MPI::max(highest, state.communicator) };
+  }
+
+
   Measures measure(const State &state)
   {
     const Tables &tables = Tables::get();
     Measures      result{};
-    result.largest_radius    = 0;
-    result.lowest            = 1e300;
-    result.highest           = -1e300;
+    std::tie(result.lowest, result.highest) = vertical_extent(state);
+    result.largest_radius                   = 0;
     result.smallest_jacobian = result.smallest_vertex_jacobian = 1e300;
 
     for (unsigned int cell = 0; cell < state.tables.cells.size(); ++cell)
@@ -65,11 +81,9 @@ namespace axiforge
         double x[9][2], smallest = 1e300, corner = 1e300, area = 0;
         for (unsigned int a = 0; a < 9; ++a)
           {
-            const Point p  = state.node_position(state.tables.cells[cell][a]);
-            x[a][0]        = p[0];
-            x[a][1]        = p[1];
-            result.lowest  = std::min(result.lowest, p[1]);
-            result.highest = std::max(result.highest, p[1]);
+            const Point p = state.node_position(state.tables.cells[cell][a]);
+            x[a][0]       = p[0];
+            x[a][1]       = p[1];
           }
         for (unsigned int q = 0; q < 13; ++q)
           {
@@ -108,29 +122,12 @@ namespace axiforge
     const double   mine             = result.smallest_jacobian;
     result.volume                   = MPI::sum(result.volume, comm);
     result.largest_radius           = MPI::max(result.largest_radius, comm);
-    result.lowest                   = MPI::min(result.lowest, comm);
-    result.highest                  = MPI::max(result.highest, comm);
     result.smallest_jacobian        = MPI::min(mine, comm);
     result.smallest_vertex_jacobian = MPI::min(result.smallest_vertex_jacobian, comm);
     for (unsigned int c = 0; c < 2; ++c)
       result.worst_place[c] =
           MPI::max(mine == result.smallest_jacobian ? result.worst_place[c] : -1e300, comm);
     return result;
-  }
-
-
-  double height_of(const State &state)
-  {
-    double lowest = 1e300, highest = -1e300;
-    for (const auto &nodes : state.tables.cells)
-      for (const unsigned int node : nodes)
-        {
-          const double z = state.node_position(node)[1];
-          lowest         = std::min(lowest, z);
-          highest        = std::max(highest, z);
-        }
-    return dealii::Utilities::MPI::max(highest, state.communicator) -
-           dealii::Utilities::MPI::min(lowest, state.communicator);
   }
 
 

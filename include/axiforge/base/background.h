@@ -14,10 +14,12 @@ namespace axiforge
   class Background
   {
   public:
-    /// Waits for the job before, and starts this one. @throws what the job before has thrown, or,
-    /// in place, this one.
+    /// Waits for the job before, and starts this one. @throws what the job before has thrown
     /// @param name of the row; must outlive the program (a literal)
     void start(const char *name, std::function<void()> job);
+
+    /// Whether this process may use more than one core.
+    static bool has_core();
 
     /// Until there is no job any more. @throws what it has thrown
     void wait();

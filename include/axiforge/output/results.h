@@ -65,13 +65,14 @@ namespace axiforge::output
     const ResultsProgress &progress();
 
   private:
-    void                   start_folder(const Provenance &provenance);
-    void                   continue_folder(const State &state, const Provenance &provenance);
-    bool                   fields_due(const State &state, const StepRecord &record) const;
+    void start_folder(const Provenance &provenance);
+    void continue_folder(const State &state, const Provenance &provenance);
+    bool fields_due(const State &state, const StepRecord &record) const;
+
     const scene::Scene    &scene;
     std::string            folder;
     std::optional<CsvFile> history; ///< first rank only
-    ResultsProgress        done;    ///< rows and files of the tools: first rank only
+    ResultsProgress        done;    ///< rows: first rank only
     Background             writer;
   };
 
@@ -89,8 +90,8 @@ namespace axiforge::output
   std::vector<double>
   history_row(const scene::Scene &scene, const StepRecord &record, double wall_seconds);
 
-  /// The fields of the state in its present configuration; no reference to the state remains.
-  /// Collective.
+  /// The fields of the state in its present configuration. Nothing of the state is read any more,
+  /// but this has to go before the state does. Collective.
   std::shared_ptr<dealii::DataOut<2>> collect_fields(const State &state);
 
   /// Writes all fields as one VTU file, without any communication: of a single rank.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <utility>
 
 #include <axiforge/state/state.h>
 
@@ -22,8 +23,8 @@ namespace axiforge
   /// Collective.
   Measures measure(const State &state);
 
-  /// highest - lowest alone [mm]: no integrals. Collective.
-  double height_of(const State &state);
+  /// Lowest and highest z alone [mm]. Collective.
+  std::pair<double, double> vertical_extent(const State &state);
 
   /// Integral over the body of revolution of a quantity given at the Gauss points of a locally
   /// owned
