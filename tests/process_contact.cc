@@ -30,8 +30,9 @@ namespace
 
   void expect_conditions(const FlowProblem &problem)
   {
-    const State &state            = problem.state;
-    double       largest_reaction = 0;
+    const State &state = problem.state;
+    // Of a body that is carried along only round-off is left.
+    double largest_reaction = 1e-4 * problem.scene.size * problem.scene.size;
     for (const NodeContact &contact : state.contacts)
       largest_reaction = std::max(largest_reaction, contact.reaction[0]);
     for (unsigned int b = 0; b < state.contacts.size(); ++b)
@@ -59,7 +60,7 @@ namespace
             EXPECT_NEAR(found[0].gap, 0, 1e-6 * problem.scene.size);
             if (node.axis_neighbour == no_tool) // there the weight is zero
               {
-                EXPECT_GT(contact.reaction[0], -1e-3 * largest_reaction);
+                EXPECT_GT(contact.reaction[0], -1e-5 * largest_reaction);
               }
           }
       }
@@ -75,7 +76,7 @@ namespace
             process::advance(problem.scene, problem.state, problem.solver(), step, records.back()));
         expect_conditions(problem);
         EXPECT_EQ(records.back().repeats, 0u);
-        EXPECT_LT(std::abs(records.back().power_residual), 1e-4 * records.back().power_tools);
+        EXPECT_LE(std::abs(records.back().power_residual), 1e-4 * records.back().power_tools);
         EXPECT_LT(std::abs(records.back().relative_volume_change), 1e-4);
       }
     records.erase(records.begin());
@@ -231,6 +232,155 @@ TEST(Cone, is_followed_over_its_rounded_corner)
       last = record.tools[0].contact_radius;
     }
   EXPECT_GT(last, 12);
+}
+
+
+namespace
+{
+  /// A platen that moves by a table of "time,position", downwards.
+  Entries by_table(const TemporaryFolder &folder, const std::string &rows, const Entries &friction)
+  {
+    Entries entries = platen("upper", 25, 0, friction) + Entries{
+      "Tool upper/Motion/Type = table",
+      "Tool upper/Motion/Table file = " + folder.file("way.csv", "time_s,position_mm\n" + rows)
+    };
+    return entries;
+  }
+
+  /// Cylinder of 25 mm on its symmetry plane, 25 mm wide, under a platen that moves by a table.
+  Entries under_press(const Entries &press, const Entries &of_material, const double end)
+  {
+    return Entries{ "Tools = upper", "Process/End time = " + number(end) } +
+           workpiece(geometry("cylinder.geo"), "RadialCells = 6, AxialCells = 6") + of_material +
+           press;
+  }
+} // namespace
+
+
+// A platen presses, holds, goes back, and presses again. While it holds or goes away nothing moves,
+// no force is left and no iteration is done; then the force is what it was before.
+TEST(Withdrawal, leaves_the_workpiece_as_it_is)
+{
+  const Entries rate = power_law(100, 0.02), plastic = perfectly_plastic(100), hardening = material;
+  for (const Entries &of_material : { rate, plastic, hardening })
+    for (const Entries &friction :
+         { Entries{ "Law = none" }, Entries{ "Law = shear", "Factor = 0.3" },
+           Entries{ "Law = smm", "Factor = 0.5" }, Entries{ "Law = sticking" } })
+      {
+        TemporaryFolder folder;
+        FlowProblem     problem(under_press(
+                by_table(folder, "0,0\n1,1\n2,1\n3,0\n4,1\n5,2\n", friction), of_material, 5));
+        const auto      records = run(problem);
+        double          height = 0, force = 0;
+        for (const StepRecord &record : records)
+          if (record.time <= 1 + 1e-9)
+            {
+              height = record.height;
+              force  = record.tools[0].force;
+            }
+          else if (record.time <= 4 + 1e-9)
+            {
+              EXPECT_EQ(record.tools[0].force, 0) << record.time;
+              EXPECT_EQ(record.iterations, 0u) << record.time;
+              EXPECT_EQ(record.height, height);
+              EXPECT_EQ(record.largest_strain_rate, 0);
+            }
+        EXPECT_NEAR(height, 24, 1e-6);
+        EXPECT_NEAR(records.back().height, 23, 1e-6);
+        for (const StepRecord &record : records)
+          if (record.time > 4 + 1e-9)
+            {
+              // the next step of the same stroke as if there had been no pause
+              EXPECT_NEAR(record.tools[0].force / force, 1, 0.02);
+              break;
+            }
+      }
+}
+
+
+// The upper platen goes up, the lower one follows with the workpiece on it: it is carried, not
+// drawn.
+TEST(Withdrawal, carries_a_billet_without_force)
+{
+  TemporaryFolder folder;
+  const auto      way = [&](const std::string &name, const std::string &rows) {
+    return Entries{ "Tool " + name + "/Motion/Type = table",
+                    "Tool " + name + "/Motion/Table file = " +
+                        folder.file(name + ".csv", "time_s,position_mm\n" + rows) };
+  };
+  FlowProblem problem(
+      Entries{ "Tools = upper, lower", "Process/End time = 2", "Time stepping/Time step = 0.25" } +
+      workpiece(geometry("cylinder_full.geo"),
+                "Radius = 25, Height = 25, RadialCells = 6, AxialCells = 6") +
+      material + platen("upper", 25, 0, { "Law = shear", "Factor = 0.3" }) +
+      platen("lower", 0, 0, { "Law = shear", "Factor = 0.3" }) + way("upper", "0,0\n1,1\n2,-4\n") +
+      way("lower", "0,0\n1,0\n2,-2\n"));
+  double largest = 0;
+  while (problem.state.time < 2 - 1e-9)
+    {
+      const StepRecord record =
+          process::advance(problem.scene, problem.state, problem.solver(), 0.25, StepRecord());
+      expect_conditions(problem);
+      EXPECT_NEAR(record.height, record.time < 1 + 1e-9 ? 25 - record.time : 24, 1e-5);
+      largest = std::max(largest, record.tools[0].force);
+      if (record.time > 1 + 1e-9)
+        {
+          EXPECT_NEAR(record.tools[0].force, 0, 1e-6 * largest);
+          EXPECT_NEAR(record.tools[1].force, 0, 1e-6 * largest);
+        }
+    }
+  EXPECT_NEAR(measure(problem.state).lowest, 2, 1e-5);
+}
+
+
+// A platen that ends where the billet does, or where its rim spreads past: what is beyond is free.
+// It is the same with a side wall, which nothing touches.
+TEST(End, of_a_profile_lets_go_what_is_past_it)
+{
+  for (const double radius : { 25., 26. })
+    {
+      TemporaryFolder   folder;
+      const std::string r      = number(radius);
+      const auto        forces = [&](const std::string &points) {
+        FlowProblem problem(Entries{ "Tools = upper", "Process/End stroke = 4" } +
+                                   workpiece(geometry("cylinder.geo"), "RadialCells = 8, AxialCells = 8") +
+                                   power_law(100, 0.1) +
+                                   tool("upper", folder.file("upper.csv", "r_mm,z_mm\n" + points)) +
+                                   moving("upper", -1));
+        return run(problem);
+      };
+      const auto ends = forces("0,25\n" + r + ",25\n"),
+                 wall = forces("0,25\n" + r + ",25\n" + r + ",60\n");
+      EXPECT_NEAR(ends.back().tools[0].force / wall.back().tools[0].force, 1, 0.005) << radius;
+      EXPECT_LE(ends.back().tools[0].contact_radius, radius * (1 + 1e-9));
+      EXPECT_GT(ends.back().largest_radius, radius + 0.5);
+    }
+}
+
+
+// Nodes of the axis and of the symmetry line stay there to the last bit.
+TEST(Lines, keep_their_nodes_exactly)
+{
+  FlowProblem problem(Entries{ "Tools = upper", "Process/End stroke = 3" } +
+                      workpiece(geometry("cylinder.geo"), "RadialCells = 5, AxialCells = 7") +
+                      material + platen("upper", 25, -0.25, { "Law = smm", "Factor = 0.5" }));
+  run(problem);
+  unsigned int n_axis = 0, n_symmetry = 0;
+  for (const BoundaryNode &node : problem.state.tables.boundary_nodes)
+    {
+      n_axis += node.on_axis;
+      n_symmetry += node.on_symmetry;
+      if (node.on_axis)
+        {
+          EXPECT_EQ(problem.state.node_position(node.node)[0], 0);
+        }
+      if (node.on_symmetry)
+        {
+          EXPECT_EQ(problem.state.node_position(node.node)[1], 0);
+        }
+    }
+  EXPECT_EQ(n_axis, 15u);
+  EXPECT_EQ(n_symmetry, 11u);
 }
 
 int main(int argc, char **argv)

@@ -8,6 +8,7 @@
 
 #include <axiforge/base/collective.h>
 #include <axiforge/base/errors.h>
+#include <axiforge/base/tolerances.h>
 #include <axiforge/meshing/folding.h>
 
 namespace axiforge::meshing
@@ -32,8 +33,7 @@ namespace axiforge::meshing
     /// Sine of the angle by which surface has to look at a line in order to meet it.
     constexpr double facing = 0.02;
 
-    /// Places within this share of the size are the same.
-    constexpr double same = 1e-9;
+    using tolerance::same_place;
 
 
     double cross(const Vector2 &a, const Vector2 &b)
@@ -298,8 +298,9 @@ namespace axiforge::meshing
       add(const Fold::Kind kind, const Point &place, const double opening, const double time_left)
       {
         // Of what meets at the same time, the widest.
-        if (!found || time_left < found->time_left * (1 - same) ||
-            (time_left <= found->time_left * (1 + same) && opening > found->opening * (1 + same)))
+        if (!found || time_left < found->time_left * (1 - same_place) ||
+            (time_left <= found->time_left * (1 + same_place) &&
+             opening > found->opening * (1 + same_place)))
           found = Fold{ kind, place, opening, time_left };
       }
 
@@ -331,7 +332,7 @@ namespace axiforge::meshing
         // Area between the piece and the point: negative in front of the surface. A point behind it
         // is on the other side of the workpiece.
         const double area = cross(along, to_p);
-        if (!(area < -same * size * along.norm()))
+        if (!(area < -same_place * size * along.norm()))
           return;
         const double t = first_root(area, cross(along, v_p) + cross(v_along, to_p),
                                     cross(v_along, v_p), horizon);
@@ -356,7 +357,7 @@ namespace axiforge::meshing
       {
         const Vector2 d = p_end.x - p.x, e = b.x - a.x, between = a.x - p.x;
         const double  determinant = cross(d, e);
-        if (std::abs(determinant) <= same * d.norm() * e.norm())
+        if (std::abs(determinant) <= same_place * d.norm() * e.norm())
           return;
         const double s = cross(between, e) / determinant, t = cross(between, d) / determinant;
         if (s > 0 && s < 1 && t > 0 && t < 1)
@@ -401,9 +402,9 @@ namespace axiforge::meshing
               if (loop.edges[e].kind != surface || !(p.free_before || p.free_after))
                 continue;
               const double distance = normal * (p.x - on_line), speed = -(normal * p.v);
-              if (kind == axis && distance < 0)
+              if (kind == axis && distance < -same_place * size)
                 add(Fold::Kind::overlap, p.x, 0, 0);
-              if (distance < same * size || speed <= 0 || !faces(loop, i, -normal))
+              if (distance < same_place * size || speed <= 0 || !faces(loop, i, -normal))
                 continue;
               // Near the axis r v_r is the same for all times, not v_r: of r_middle, where v holds.
               const double time_left =
@@ -506,10 +507,11 @@ namespace axiforge::meshing
                 const Vector2 normal = Vector2({ -along[1], along[0] });
                 bool          counts = true;
                 for (const auto &[x, n] : list)
-                  counts &= n * normal < 1 - same || std::abs(n * (start - x)) > same * size;
+                  counts &=
+                      n * normal < 1 - same_place || std::abs(n * (start - x)) > same_place * size;
                 for (const Loop &other : loops)
                   for (const Sample &sample : other.samples)
-                    counts &= normal * (sample.x - start) > -same * size;
+                    counts &= normal * (sample.x - start) > -same_place * size;
                 if (counts)
                   list.emplace_back(start, normal);
               }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include <axiforge/base/tolerances.h>
 #include <axiforge/meshing/outline.h>
 #include <axiforge/meshing/workpiece_mesh.h>
 
@@ -15,9 +16,6 @@ namespace axiforge::meshing
 
     /// Those above this come before all others [rad].
     constexpr double sharp_angle = M_PI / 4;
-
-    /// A point inside a tool by this share of the size is moved out.
-    constexpr double inside = 1e-9;
 
 
     bool held(const dealii::types::boundary_id id)
@@ -155,7 +153,7 @@ namespace axiforge::meshing
       // Open surface that passes through a tool between two nodes is caught here.
       for (unsigned int i = 0; i < scene.tools.size(); ++i)
         if (scene.tools[i].profile.find(Point(before - shift[i]), 0, found) > 0 &&
-            found[0].gap < -inside * scene.size && tool < 0)
+            found[0].gap < -tolerance::same_place * scene.size && tool < 0)
           tool = i;
     if (tool < 0)
       return node;

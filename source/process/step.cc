@@ -21,6 +21,13 @@ namespace axiforge::process
 
     /// A step that goes beyond the end of the operation is cut so many times at most.
     constexpr unsigned int most_cuts = 12;
+
+    /// Share of the powers of a step that may be missing from their balance.
+    constexpr double largest_imbalance = 1e-3;
+
+    /// Powers below this share of yield stress times area times speed are those of a body at rest.
+    constexpr double least_power = 1e-6;
+
     /// With a target accuracy a step may be so many times as long as the usual one.
     constexpr double largest_driven = 5;
 
@@ -95,12 +102,34 @@ namespace axiforge::process
     }
 
 
+    /// What is wrong with the powers of a solved step, empty if nothing is: they are the test that
+    /// no iteration makes of itself. With a loose tolerance of the solver they close as loosely.
+    std::string fault_of_powers(const scene::Scene &scene, const StepRecord &record)
+    {
+      const double put_in = std::abs(record.power_tools) + std::abs(record.power_boundaries);
+      const double all = put_in + std::abs(record.power_plastic) + std::abs(record.power_friction);
+      const double at_rest = least_power * scene.characteristic_speed * scene.size * scene.size *
+                             scene.material.flow_stress(0, scene.characteristic_rate).value;
+      if (!(all > at_rest))
+        return "";
+      const double allowed = all * std::max(largest_imbalance, 10 * scene.flow.tolerance);
+      const auto   told    = [&](const std::string &what, const double power) {
+        return fmt::format("{}: {:.4g} mW, where tools and boundaries put in {:.4g} mW", what,
+                                power, record.power_tools + record.power_boundaries);
+      };
+      if (record.power_plastic < -allowed)
+        return told("plastic work gives power instead of taking it", record.power_plastic);
+      if (record.power_friction < -allowed)
+        return told("friction gives power instead of taking it", record.power_friction);
+      if (std::abs(record.power_residual) > allowed)
+        return told("the powers do not balance", record.power_residual);
+      return "";
+    }
+
+
     void accept(State &state, solvers::FlowResult &result, const double time_step)
     {
-      const std::size_t n = state.position.locally_owned_size();
-      for (std::size_t i = 0; i < n; ++i)
-        state.position.local_element(i) += time_step * result.velocity.local_element(i);
-      state.position.update_ghost_values();
+      state.move_nodes(result.velocity, time_step);
       for (unsigned int cell = 0; cell < state.tables.cells.size(); ++cell)
         for (unsigned int q = 0; q < 9; ++q)
           state.strain.local_element(state.tables.first_strain_dof[cell] + q) +=
@@ -171,13 +200,17 @@ namespace axiforge::process
           result.record.errors.time = time_error(scene, state, solver, result, time_step);
         times.add(result.record.times);
         if (result.converged)
+          if (const std::string fault = fault_of_powers(scene, result.record); !fault.empty())
+            {
+              result.converged = false;
+              result.failure   = fault;
+            }
+        if (result.converged)
           {
             // Try the step on a copy of the position: a cell that turns over takes it back.
             const Phase phase("geometry after the step");
             const Field before = state.position;
-            for (std::size_t i = 0; i < state.position.locally_owned_size(); ++i)
-              state.position.local_element(i) += time_step * result.velocity.local_element(i);
-            state.position.update_ghost_values();
+            state.move_nodes(result.velocity, time_step);
             const Measures size   = measure(state);
             const double   radius = scene.process.fill_radius;
             const double   fill =

@@ -2,6 +2,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <axiforge/base/phases.h>
+#include <axiforge/base/tolerances.h>
 #include <axiforge/solvers/contact_set.h>
 
 namespace axiforge::solvers
@@ -16,6 +17,21 @@ namespace axiforge::solvers
     /// Gap, in shares of the edges at a node, below which nothing is torn off.
     constexpr double least_departure = 1e-3;
 
+    /// A reaction pulls if it is below this share of the forces of the cells at its node, negative.
+    constexpr double tension_of_cells = 1e-6;
+
+    /// The same over flow stress times area of the workpiece, where cells have hardly any forces.
+    constexpr double tension_of_workpiece = 1e-10;
+
+    /// A node may be released so often in a step as soon as it pulls; then only at convergence.
+    constexpr unsigned int free_releases = 2;
+
+    /// Share of its edges by which a node that neither holds nor stays out may be in a tool.
+    constexpr double deepest_left_in = 0.01;
+
+    /// Share of a tool's way in a step by which it has to come nearer in order to press.
+    constexpr double approach = 1e-6;
+
     double cross(const Vector2 &a, const Vector2 &b)
     {
       return a[0] * b[1] - a[1] * b[0];
@@ -28,9 +44,13 @@ namespace axiforge::solvers
       , scene(scene)
       , state(state)
       , n_releases(nodes.size(), 0)
+      , left_in(nodes.size(), 0.)
+      , curvature(nodes.size(), 0.)
       , tool_velocities(scene.tools.size())
       , reach(0.05 * scene.size)
-      , catch_distance(1e-10 * scene.size)
+      , catch_distance(tolerance::caught * scene.size)
+      , least_tension(tension_of_workpiece * scene.size * scene.size *
+                      scene.material.flow_stress(0, scene.characteristic_rate).value)
   {
     for (const auto &group : state.boundary_ids)
       {
@@ -60,6 +80,68 @@ namespace axiforge::solvers
   }
 
 
+  bool ContactSet::presses(const double time_step) const
+  {
+    const double end = state.time + time_step;
+    bool         any = false;
+    for (const scene::Tool &tool : scene.tools)
+      {
+        const Vector2 before = tool.motion.displacement(state.time),
+                      after  = tool.motion.displacement(end);
+        const double way     = (after - before).norm();
+        if (!(way > 0))
+          continue;
+        for (unsigned int b = 0; b < nodes.size() && !any; ++b)
+          {
+            const BoundaryNode           &node = state.tables.boundary_nodes[b];
+            const Point                   x    = state.node_position(node.node);
+            std::array<tools::Contact, 2> then, now;
+            if (!node.free_surface || !node.owned)
+              continue;
+            const unsigned int n = tool.profile.find(x - after, 0, then);
+            for (unsigned int i = 0; i < n; ++i)
+              if (then[i].gap < -catch_distance)
+                any |= tool.profile.find(x - before, way, now) == 0 ||
+                       then[i].gap < now[0].gap - approach * way;
+          }
+      }
+    return MPI::max(static_cast<unsigned int>(any), state.communicator) > 0;
+  }
+
+
+  bool ContactSet::any_tool_turns(const double time_step) const
+  {
+    // Less than half of the speed that the tool has had along the way that it came.
+    const double end = state.time + time_step;
+    for (const scene::Tool &tool : scene.tools)
+      {
+        const Vector2 now    = tool.motion.displacement(state.time);
+        const Vector2 before = (now - tool.motion.displacement(state.time - state.last_time_step)) /
+                               state.last_time_step,
+                      after = (tool.motion.displacement(end) - now) / time_step;
+        if (after * before < 0.5 * before.norm_square())
+          return true;
+      }
+    return false;
+  }
+
+
+  double ContactSet::turning_stiffness(const unsigned int b, const double time_step) const
+  {
+    const NodeContact &contact = nodes[b];
+    if (!contact.active() || contact.tool[1] != no_tool)
+      return 0;
+    return std::max(0., -curvature[b] * contact.reaction[0] * time_step);
+  }
+
+
+  void ContactSet::clear()
+  {
+    for (NodeContact &contact : nodes)
+      contact = NodeContact();
+  }
+
+
   unsigned int ContactSet::locate(const Field &velocity, const double time_step)
   {
     if (scene.tools.empty())
@@ -81,6 +163,7 @@ namespace axiforge::solvers
       unsigned int tool, face;
       double       gap;
       Vector2      normal;
+      double       curvature;
     };
 
     const auto locate_node = [&](const unsigned int b) {
@@ -103,8 +186,11 @@ namespace axiforge::solvers
           for (unsigned int i = 0; i < n && n_touching < touching.size(); ++i)
             {
               const bool held = i == 0 ? was_active : in_concave_pair(b, tool, found[i].face);
-              if (held || found[i].gap < -catch_distance)
-                touching[n_touching++] = { tool, found[i].face, found[i].gap, found[i].normal };
+              if (found[i].past_end > catch_distance) // the profile ends before: nothing is there
+                continue;
+              if (held || found[i].gap < -std::max(catch_distance, left_in[b]))
+                touching[n_touching++] = { tool, found[i].face, found[i].gap, found[i].normal,
+                                           found[i].curvature };
             }
         }
       for (unsigned int i = 1; i < n_touching;
@@ -132,6 +218,7 @@ namespace axiforge::solvers
               next.normal[i] = touching[order[i]].normal;
               next.gap[i]    = touching[order[i]].gap;
             }
+          curvature[b] = touching[order[0]].curvature;
         }
       if ((next.tool[0] != contact.tool[0] || next.tool[1] != contact.tool[1]) && node.owned)
         ++n_changes;
@@ -186,33 +273,82 @@ namespace axiforge::solvers
         else
           contact.reaction = { { f * contact.normal[0], 0 } };
 
-        if (!may_release || n_releases[b] >= 2)
+        if (!may_release || n_releases[b] >= free_releases)
           continue;
-        const double threshold =
-            -1e-6 * (scale.local_element(2 * node.node) + scale.local_element(2 * node.node + 1));
-        const bool decided_by_neighbour =
-            node.axis_neighbour != no_tool && nodes[node.axis_neighbour].active();
-        bool released = false;
-        if (contact.tool[1] != no_tool && contact.reaction[1] < threshold)
-          {
-            contact.tool[1] = no_tool;
-            released        = true;
-          }
-        if (contact.reaction[0] < threshold && !decided_by_neighbour)
-          {
-            contact.tool[0]   = contact.tool[1];
-            contact.face[0]   = contact.face[1];
-            contact.normal[0] = contact.normal[1];
-            contact.gap[0]    = contact.gap[1];
-            contact.tool[1]   = no_tool;
-            released          = true;
-          }
-        if (released)
-          {
-            ++n_releases[b];
-            n_changes += node.owned;
-          }
+        n_changes += release(b, scale) * node.owned;
       }
+    return n_changes;
+  }
+
+
+  double ContactSet::allowed_tension(const unsigned int b, const Field &scale) const
+  {
+    const unsigned int node = state.tables.boundary_nodes[b].node;
+    return tension_of_cells * (scale.local_element(2 * node) + scale.local_element(2 * node + 1)) +
+           least_tension;
+  }
+
+
+  bool ContactSet::release(const unsigned int b, const Field &scale)
+  {
+    NodeContact       &contact   = nodes[b];
+    const unsigned int neighbour = state.tables.boundary_nodes[b].axis_neighbour;
+    const double       allowed   = allowed_tension(b, scale);
+    bool               released  = false;
+    if (contact.tool[1] != no_tool && contact.reaction[1] < -allowed)
+      {
+        contact.tool[1] = no_tool;
+        released        = true;
+      }
+    if (contact.active() && contact.reaction[0] < -allowed &&
+        !(neighbour != no_tool && nodes[neighbour].active()))
+      {
+        contact.tool[0]   = contact.tool[1];
+        contact.face[0]   = contact.face[1];
+        contact.normal[0] = contact.normal[1];
+        contact.gap[0]    = contact.gap[1];
+        contact.tool[1]   = no_tool;
+        released          = true;
+      }
+    if (released)
+      {
+        ++n_releases[b];
+        contact.reaction = { { 0, 0 } };
+      }
+    return released;
+  }
+
+
+  unsigned int ContactSet::release_worst(const Field &scale)
+  {
+    // Of the owned nodes the one that pulls most; the ranks agree on it by its value.
+    const auto tension = [&](const unsigned int b) {
+      const unsigned int neighbour = state.tables.boundary_nodes[b].axis_neighbour;
+      if (!nodes[b].active())
+        return 0.;
+      const double allowed = allowed_tension(b, scale);
+      double       result  = 0;
+      if (neighbour == no_tool || !nodes[neighbour].active())
+        result = -nodes[b].reaction[0] - allowed;
+      if (nodes[b].tool[1] != no_tool)
+        result = std::max(result, -nodes[b].reaction[1] - allowed);
+      return std::max(result, 0.);
+    };
+    double worst = 0;
+    for (unsigned int b = 0; b < nodes.size(); ++b)
+      worst = std::max(worst, tension(b));
+    worst = MPI::max(worst, state.communicator);
+    if (!(worst > 0))
+      return 0;
+    const Field  length    = edge_lengths();
+    unsigned int n_changes = 0;
+    for (unsigned int b = 0; b < nodes.size(); ++b)
+      if (tension(b) >= worst * (1 - 1e-12))
+        {
+          const BoundaryNode &node = state.tables.boundary_nodes[b];
+          left_in[b]               = deepest_left_in * length.local_element(2 * node.node);
+          n_changes += release(b, scale) * node.owned;
+        }
     return n_changes;
   }
 

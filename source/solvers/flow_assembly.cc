@@ -407,6 +407,7 @@ namespace axiforge::solvers
         for (unsigned int lane = 0; lane < cells.n; ++lane)
           {
             add_friction_of_cell(cells[lane], lane, K, r);
+            add_turning_of_cell(cells[lane], lane, K);
             if (!cell_external.empty())
               for (unsigned int j = 0; j < n_dofs; ++j)
                 r[j][lane] -= cell_external[cells[lane]][j];
@@ -442,6 +443,28 @@ namespace axiforge::solvers
                     K[i][j][lane] += edge.tangent[a][c] * edge.matrix[a][b] * edge.tangent[b][d];
             }
       }
+  }
+
+
+  void FlowSolver::add_turning_of_cell(const unsigned int cell,
+                                       const unsigned int lane,
+                                       Lanes (&K)[n_dofs][n_dofs]) const
+  {
+    for (const unsigned int e : cell_edges[cell])
+      for (unsigned int a = 0; a < 3; ++a)
+        {
+          const unsigned int b         = state.tables.edges[e].boundary_nodes[a];
+          const double       stiffness = contact->turning_stiffness(b, time_step);
+          if (stiffness == 0)
+            continue;
+          // A vertex belongs to two edges.
+          const double       share = (a < 2 ? 0.5 : 1) * stiffness;
+          const Vector2      t     = ContactSet::tangent(contact->nodes[b].normal[0]);
+          const unsigned int i = 2 * InterfaceFriction::side_nodes[state.tables.edges[e].side][a];
+          K[i][i][lane] += share * t[0] * t[0];
+          K[i + 1][i][lane] += share * t[1] * t[0];
+          K[i + 1][i + 1][lane] += share * t[1] * t[1];
+        }
   }
 
 

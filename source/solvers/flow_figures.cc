@@ -46,6 +46,17 @@ namespace axiforge::solvers
   void FlowSolver::finish(FlowResult &result)
   {
     const Phase phase("figures of the step");
+    // Exactly along the axis and the symmetry lines: round-off would add up in the positions.
+    for (const BoundaryNode &node : state.tables.boundary_nodes)
+      {
+        double *v = &velocity.local_element(2 * node.node);
+        if (node.on_axis)
+          v[0] = 0;
+        if (node.on_symmetry)
+          for (unsigned int c = 0; c < 2; ++c)
+            if (std::abs(node.symmetry_normal[c]) == 1)
+              v[c] = 0;
+      }
     result.velocity = velocity;
     result.velocity.update_ghost_values();
     result.edge_friction = friction->history(points);

@@ -3,6 +3,7 @@
 #include <deal.II/base/timer.h>
 
 #include <axiforge/base/phases.h>
+#include <axiforge/base/tolerances.h>
 #include <axiforge/solvers/flow_solver.h>
 
 namespace axiforge::solvers
@@ -18,9 +19,6 @@ namespace axiforge::solvers
 
     /// Share of the characteristic forces and rates below which a workpiece counts as at rest.
     constexpr double at_rest = 1e-3;
-
-    /// Share of the size of the workpiece that positions are exact to.
-    constexpr double round_off = 1e-13;
 
     /// Passes over the lagged strain rate of friction in the first step, which has no step before
     /// it.
@@ -133,6 +131,9 @@ namespace axiforge::solvers
             points[n_points * cell + q].stress[c] = state.cell_history[cell].stress[q][c];
       }
     failure.clear();
+    const bool at_rest = nothing_drives() && !contact->presses(time_step);
+    if (at_rest || (state.step > 0 && contact->any_tool_turns(time_step)))
+      start_anew();
 
     bool                move_dual = false;
     unsigned int        passes = 0, stalled = 0;
@@ -147,7 +148,7 @@ namespace axiforge::solvers
         times.residual += timer.wall_time();
 
         timer.restart();
-        unsigned int changes = contact->locate(velocity, time_step);
+        unsigned int changes = at_rest ? 0 : contact->locate(velocity, time_step);
         contact->update_reactions(internal, scale, false);
         if (iteration == 0 && state.step > 0)
           changes += contact->release_departing(scale);
@@ -174,6 +175,13 @@ namespace axiforge::solvers
               }
           }
         changes = MPI::sum(changes, state.communicator);
+        if (changes == 0 && converged(norms)) // no reaction may pull
+          changes = MPI::sum(contact->release_worst(scale), state.communicator);
+        if (changes > 0 && converged(norms))
+          {
+            contact->make_frames(velocity, time_step, frames);
+            norms = measure();
+          }
         times.contact += timer.wall_time();
 
         result.record.iterations = iteration;
@@ -186,9 +194,7 @@ namespace axiforge::solvers
             failure = "the iteration ran into numbers that are not finite";
             break;
           }
-        const double tolerance = scene.flow.tolerance;
-        if (changes == 0 && norms.residual <= tolerance && norms.divergence <= tolerance &&
-            norms.constraint <= tolerance)
+        if (changes == 0 && converged(norms))
           {
             if (state.step == 0 && passes < first_step_passes &&
                 friction->refresh_lagged_rates(points))
@@ -204,7 +210,7 @@ namespace axiforge::solvers
             failure =
                 fmt::format("no convergence in {} iterations (residual {:.2g}, divergence {:.2g}, "
                             "allowed {:.2g})",
-                            iteration, norms.residual, norms.divergence, tolerance);
+                            iteration, norms.residual, norms.divergence, scene.flow.tolerance);
             break;
           }
 
@@ -252,6 +258,32 @@ namespace axiforge::solvers
   }
 
 
+  bool FlowSolver::converged(const Norms &norms) const
+  {
+    const double tolerance = scene.flow.tolerance;
+    return norms.residual <= tolerance && norms.divergence <= tolerance &&
+           norms.constraint <= tolerance;
+  }
+
+
+  bool FlowSolver::nothing_drives() const
+  {
+    return scene.boundaries.empty() && !scene.body_force;
+  }
+
+
+  void FlowSolver::start_anew()
+  {
+    velocity = 0;
+    for (auto &coefficients : pressure)
+      coefficients.fill(0);
+    for (FlowPoint &point : points)
+      std::fill_n(point.stress, 4, 0.);
+    contact->clear();
+    friction->reset_dual();
+  }
+
+
   bool FlowSolver::held_axially() const
   {
     unsigned int n = 0;
@@ -294,7 +326,8 @@ namespace axiforge::solvers
     const double least_rate = at_rest * scene.characteristic_rate * std::sqrt(state.initial_volume);
     return { std::sqrt(force) / std::max(std::sqrt(reference), least_force),
              std::sqrt(divergence_square) / std::max(std::sqrt(rate_square), least_rate),
-             std::max(0., constraint - round_off * size / time_step) / scene.characteristic_speed };
+             std::max(0., constraint - tolerance::round_off * size / time_step) /
+                 scene.characteristic_speed };
   }
 
 

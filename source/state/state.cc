@@ -2,7 +2,9 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/dofs/dof_tools.h>
 
+#include <axiforge/base/collective.h>
 #include <axiforge/base/errors.h>
+#include <axiforge/base/tolerances.h>
 #include <axiforge/state/state.h>
 
 namespace axiforge
@@ -173,6 +175,8 @@ namespace axiforge
           }
       }
 
+    // Directions of one line differ by no more than this.
+    constexpr double line_direction = 1e-6;
     for (const BoundaryEdge &edge : tables.edges)
       for (const unsigned int b : edge.boundary_nodes)
         {
@@ -184,6 +188,12 @@ namespace axiforge
               node.on_symmetry     = true;
               const Vector2 along  = node_position(edge.nodes[1]) - node_position(edge.nodes[0]);
               node.symmetry_normal = Vector2({ -along[1], along[0] }) / along.norm();
+              for (unsigned int c = 0; c < 2; ++c)
+                if (std::abs(node.symmetry_normal[c]) < line_direction)
+                  {
+                    node.symmetry_normal[c]     = 0;
+                    node.symmetry_normal[1 - c] = std::copysign(1., node.symmetry_normal[1 - c]);
+                  }
             }
           else
             {
@@ -204,5 +214,58 @@ namespace axiforge
     contacts.assign(tables.boundary_nodes.size(), NodeContact());
     edge_friction.assign(tables.edges.size(), EdgeFriction());
     cell_history.assign(tables.cells.size(), CellHistory{});
+    put_on_lines();
+  }
+
+
+  void State::put_on_lines()
+  {
+    // The lines r = 0, and r or z = const of the symmetry lines, whose nodes differ by round-off.
+    std::vector<std::array<double, 2>> mine;
+    double                             extent = size;
+    for (const BoundaryNode &node : tables.boundary_nodes)
+      {
+        const Point x = node_position(node.node);
+        if (size == 0)
+          extent = std::max({ extent, std::abs(x[0]), std::abs(x[1]) });
+        for (unsigned int c = 0; c < 2; ++c)
+          if (node.owned && node.on_symmetry && std::abs(node.symmetry_normal[c]) == 1)
+            mine.push_back({ { static_cast<double>(c), x[c] } });
+      }
+    extent                                   = Utilities::MPI::max(extent, communicator);
+    std::vector<std::array<double, 2>> lines = gather_rows(communicator, mine);
+    std::sort(lines.begin(), lines.end());
+    const double close = tolerance::same_place * extent;
+    const auto   line  = [&](const unsigned int c, const double x) {
+      if (std::abs(x) < close)
+        return 0.;
+      const auto found =
+          std::lower_bound(lines.begin(), lines.end(),
+                              std::array<double, 2>{ { static_cast<double>(c), x - close } });
+      return found != lines.end() && (*found)[0] == c && (*found)[1] < x ? (*found)[1] : x;
+    };
+    for (const BoundaryNode &node : tables.boundary_nodes)
+      {
+        if (node.on_axis)
+          position.local_element(2 * node.node) = 0;
+        if (node.on_symmetry)
+          for (unsigned int c = 0; c < 2; ++c)
+            if (std::abs(node.symmetry_normal[c]) == 1)
+              {
+                double &x = position.local_element(2 * node.node + c);
+                x         = line(c, x);
+              }
+      }
+  }
+
+
+  void State::move_nodes(const Field &speed, const double duration)
+  {
+    for (std::size_t i = 0; i < position.locally_owned_size(); ++i)
+      position.local_element(i) += duration * speed.local_element(i);
+    for (const BoundaryNode &node : tables.boundary_nodes)
+      if (node.on_axis && node.owned)
+        position.local_element(2 * node.node) = 0;
+    position.update_ghost_values();
   }
 } // namespace axiforge

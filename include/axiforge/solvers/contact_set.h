@@ -32,6 +32,18 @@ namespace axiforge::solvers
     /// Starts from the contacts of the state.
     ContactSet(const scene::Scene &scene, const State &state);
 
+    /// Whether a tool comes nearer, in the step, to surface that it then is in if nothing moves. If
+    /// none does, and nothing else drives the workpiece, rest without any force is the solution.
+    /// Collective.
+    bool presses(double time_step) const;
+
+    /// Whether a tool goes on with less than half of its speed, or back: the velocities and
+    /// contacts of the last step are no start for this one then.
+    bool any_tool_turns(double time_step) const;
+
+    /// No contact at all.
+    void clear();
+
     /**
      * Finds gaps and normals of the nodes at the end of the step. Nodes that penetrate are caught.
      * @param velocity of the current iterate, with its ghosts [mm/s]
@@ -49,6 +61,15 @@ namespace axiforge::solvers
      * @return number of locally owned nodes released
      */
     unsigned int update_reactions(const Field &force, const Field &scale, bool may_release);
+
+    /**
+     * Releases, of the nodes that are still under tension when all else has converged, the one that
+     * pulls most: they were released and caught again in this step. Friction, which comes and goes
+     * with a node, allows neither state of such a node exactly; it is left in the tool, if that is
+     * by less than a hundredth of its edges, and caught in the next step. Collective.
+     * @return number of locally owned nodes released
+     */
+    unsigned int release_worst(const Field &scale);
 
     /**
      * Releases the nodes that the first increment of a step would have to pull back on to their
@@ -84,6 +105,10 @@ namespace axiforge::solvers
       return area.local_element(2 * node);
     }
 
+    /// What a concave tool adds to the stiffness of a node along its surface [N s/mm]: as the node
+    /// slides, the reaction turns back (doc/theory.md, (18a)). 0 at nodes with two conditions.
+    double turning_stiffness(unsigned int b, double time_step) const;
+
     /// Velocity of a tool during the step [mm/s].
     Vector2 tool_velocity(unsigned int tool) const
     {
@@ -105,15 +130,24 @@ namespace axiforge::solvers
     /// Half the lengths of the edges at each node, in the first component [mm].
     Field edge_lengths() const;
 
+    /// Tension of a node that counts as none [N].
+    double allowed_tension(unsigned int b, const Field &scale) const;
+
+    /// Takes a node off what pulls it. @return whether something does
+    bool release(unsigned int b, const Field &scale);
+
     bool in_concave_pair(unsigned int b, unsigned int tool, unsigned int face) const;
 
     const scene::Scene       &scene;
     const State              &state;
     std::vector<unsigned int> n_releases; ///< of each boundary node in this step
+    std::vector<double>       left_in;    ///< how deep a free node may be in a tool [mm]
+    std::vector<double>       curvature;  ///< of the first tool at each boundary node [1/mm]
     std::vector<Vector2>      tool_velocities;
     std::vector<unsigned int> condition;      ///< per boundary id
     Field                     area;           ///< that the nodes stand for [mm^2]
     double                    reach;          ///< how far an active node is looked for [mm]
     double                    catch_distance; ///< gaps below this are round-off [mm]
+    double                    least_tension;  ///< that counts as one [N]
   };
 } // namespace axiforge::solvers

@@ -97,7 +97,14 @@ namespace axiforge::solvers
     void  add_boundary_pressure();
     void  add_friction_forces();
     Norms measure() const;
+    bool  converged(const Norms &norms) const;
     bool  held_axially() const;
+
+    /// Whether tools alone can move the workpiece.
+    bool nothing_drives() const;
+
+    /// A workpiece at rest without stress and contact, as in the first step of all.
+    void start_anew();
 
     /// Nodal forces that contact and kinematic conditions have to balance: internal - external +
     /// friction, with ghosts.
@@ -112,6 +119,8 @@ namespace axiforge::solvers
                               unsigned int lane,
                               Lanes (&K)[n_dofs][n_dofs],
                               GroupDofs &r) const;
+    void
+    add_turning_of_cell(unsigned int cell, unsigned int lane, Lanes (&K)[n_dofs][n_dofs]) const;
     void add_to_system(unsigned int cell,
                        unsigned int lane,
                        const Lanes (&K)[n_dofs][n_dofs],

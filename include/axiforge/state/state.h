@@ -159,8 +159,13 @@ namespace axiforge
     /// continued bit for bit.
     void setup_dofs();
 
-    /// Fills the tables that depend on the position field; call once it is known.
+    /// Fills the tables that depend on the position field; call once it is known. Nodes of the axis
+    /// and of symmetry lines are put exactly on them. Collective.
     void setup_tables();
+
+    /// Moves the nodes for a time [s] with a velocity [mm/s]; those of the axis stay on it exactly.
+    /// Collective.
+    void move_nodes(const Field &velocity, double time);
 
     unsigned int n_unknowns() const
     {
@@ -171,5 +176,8 @@ namespace axiforge
     {
       return Point(position.local_element(2 * node), position.local_element(2 * node + 1));
     }
+
+  private:
+    void put_on_lines();
   };
 } // namespace axiforge

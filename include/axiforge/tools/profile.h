@@ -20,6 +20,7 @@ namespace axiforge::tools
                            ///< curvature / (1 + curvature * gap).
     unsigned int face       = 0; ///< number of the smooth part of the outline
     double       arc_length = 0; ///< of `closest` along its chain [mm]
+    double       past_end   = 0; ///< way beyond a free end of the profile, along it [mm]
   };
 
   /// The deepest of some points inside a tool.
