@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <cstdlib>
+#include <random>
+
 #include <deal.II/distributed/solution_transfer.h>
 
 #include <axiforge/base/collective.h>
@@ -128,6 +131,32 @@ namespace axiforge::meshing
   }
 
 
+  namespace
+  {
+    /**
+     * For tests: moves each node by a share of the size given by the environment variable
+     * AXIFORGE_DISTURB (1e-12, say), as another processor's rounding might. Nodes of the axis and
+     * of symmetry lines are put back by setup_tables().
+     */
+    void disturb(State &state)
+    {
+      const char *text = std::getenv("AXIFORGE_DISTURB");
+      if (!text)
+        return;
+      const double                           share = std::strtod(text, nullptr) * state.size;
+      std::uniform_real_distribution<double> shift(-share, share);
+      for (std::size_t i = 0; i < state.position.locally_owned_size(); ++i)
+        {
+          std::minstd_rand random(state.position.get_partitioner()->local_to_global(i) + 1);
+          random.discard(3);
+          state.position.local_element(i) += shift(random);
+        }
+      state.position.update_ghost_values();
+      state.setup_tables();
+    }
+  } // namespace
+
+
   void
   make_initial_state(const WorkpieceMesh &mesh, const unsigned int refinement_levels, State &state)
   {
@@ -141,6 +170,7 @@ namespace axiforge::meshing
 
     const auto outline = outline_of(mesh);
     state.size = std::max(outline.upper[0] - outline.lower[0], outline.upper[1] - outline.lower[1]);
+    disturb(state);
     state.initial_volume = measure(state).volume;
   }
 } // namespace axiforge::meshing

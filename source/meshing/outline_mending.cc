@@ -13,6 +13,39 @@ namespace axiforge::meshing
     constexpr double sharpest_wave = 1.;
 
 
+    /// Twice the area to the left of a run of points that its chord closes; positive where the run
+    /// goes round the body, as a tip does, negative where it goes round a notch.
+    template <typename Place>
+    double twice_area(const std::vector<Place> &run, const unsigned int i, const unsigned int j)
+    {
+      double area = 0;
+      for (unsigned int k = i + 1; k < j; ++k)
+        {
+          const Vector2 u = run[k].x - run[i].x, v = run[k + 1].x - run[i].x;
+          area += u[0] * v[1] - u[1] * v[0];
+        }
+      return area;
+    }
+
+
+    /// Whether the straight lines between the points of a run cross.
+    template <typename Place>
+    bool crosses_itself(const std::vector<Place> &run, const unsigned int i, const unsigned int j)
+    {
+      const auto left = [](const Point &a, const Point &b, const Point &c) {
+        return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+      };
+      for (unsigned int k = i; k < j; ++k)
+        for (unsigned int l = k + 2; l < j; ++l)
+          {
+            const Point &a = run[k].x, &b = run[k + 1].x, &c = run[l].x, &d = run[l + 1].x;
+            if (left(a, b, c) * left(a, b, d) < 0 && left(c, d, a) * left(c, d, b) < 0)
+              return true;
+          }
+      return false;
+    }
+
+
     /// The part of a free piece between two parameters.
     OutlinePiece part(const OutlinePiece &whole, const double from, const double to)
     {
@@ -92,6 +125,9 @@ namespace axiforge::meshing
   {
     constexpr unsigned int n     = 4; // places looked at on a piece
     constexpr double       ratio = 2; // of the way to the chord
+    // A run with less area than this share of its way squared lies upon itself: a spike or a closed
+    // slit. One with more is a tip or a groove, and is kept unless it crosses itself.
+    constexpr double thin = 1e-3;
     struct Place
     {
       unsigned int piece, quarter;
@@ -113,7 +149,9 @@ namespace axiforge::meshing
             for (unsigned int i = 0; i < run.size(); ++i)
               for (unsigned int j = i + 2; j < run.size() && run[j].s - run[i].s < 4 * width; ++j)
                 if (const double way = run[j].s - run[i].s;
-                    way > longest && run[i].x.distance(run[j].x) < way / ratio)
+                    way > longest && run[i].x.distance(run[j].x) < way / ratio &&
+                    (std::abs(twice_area(run, i, j)) < 2 * thin * way * way ||
+                     crosses_itself(run, i, j)))
                   {
                     longest = way;
                     from    = run[i];

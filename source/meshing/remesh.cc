@@ -49,6 +49,11 @@ namespace axiforge::meshing
     constexpr double curl_width = 0.5;
 
 
+    /// A new mesh may enclose another volume than the old one by this share, if none does it
+    /// better.
+    constexpr double largest_volume_change = 1e-4;
+
+
     struct Made
     {
       NewMesh mesh;
@@ -82,17 +87,19 @@ namespace axiforge::meshing
     Made make_mesh(const Snapshot     &old,
                    const scene::Scene &scene,
                    const State        &state,
-                   const double        volume)
+                   const double        volume,
+                   const double        size_factor)
     {
       const Phase   phase("new mesh");
       Made          made;
       const Outline present(old, scene, state.time);
       const double  area = present.area();
-      const double  size = scene.remeshing.element_size > 0
-                               ? scene.remeshing.element_size
-                               : size_for_cells * std::sqrt(area / state.remeshing.wanted_cells);
-      made.mesh.fault    = "gmsh makes no sound mesh";
-      double best        = -1;
+      const double  size =
+          size_factor * (scene.remeshing.element_size > 0
+                             ? scene.remeshing.element_size
+                             : size_for_cells * std::sqrt(area / state.remeshing.wanted_cells));
+      made.mesh.fault = "gmsh makes no sound mesh";
+      double best     = -1;
       // Where the outline is too rugged for a mesh, more of it is mended.
       for (const double mending : { 1., 2., 4. })
         {
@@ -121,10 +128,25 @@ namespace axiforge::meshing
                     made.mesh.fault = mesh.fault;
                   continue;
                 }
+              const double jump = mesh.mesh.volume() - volume;
+              bool         restored;
+              {
+                const Phase volume_phase("volume");
+                restored = restore_volume(mesh, volume, size);
+              }
+              if (!restored && std::abs(jump) > largest_volume_change * volume)
+                {
+                  if (best < 0)
+                    made.mesh.fault = fmt::format(
+                        "the new outline would enclose {:+.2e} of the volume more", jump / volume);
+                  continue;
+                }
               if (const double value = smallest_scaled_jacobian(mesh.mesh); value > best)
                 {
-                  made.mesh = std::move(mesh);
-                  best      = value;
+                  made.mesh        = std::move(mesh);
+                  made.volume_jump = jump;
+                  made.restored    = restored;
+                  best             = value;
                 }
               if (best > good_mesh)
                 break;
@@ -132,11 +154,6 @@ namespace axiforge::meshing
           if (best > 0)
             break;
         }
-      if (!made.mesh.fault.empty())
-        return made;
-      made.volume_jump = made.mesh.mesh.volume() - volume;
-      const Phase volume_phase("volume");
-      made.restored = restore_volume(made.mesh, volume, size);
       return made;
     }
 
@@ -288,7 +305,7 @@ namespace axiforge::meshing
   }
 
 
-  RemeshResult remesh(const scene::Scene &scene, State &state)
+  RemeshResult remesh(const scene::Scene &scene, State &state, const double size_factor)
   {
     RemeshResult   result;
     const Measures before  = measure(state);
@@ -306,7 +323,7 @@ namespace axiforge::meshing
     if (MPI::this_mpi_process(state.communicator) == 0)
       try
         {
-          made = make_mesh(old, scene, state, before.volume);
+          made = make_mesh(old, scene, state, before.volume, size_factor);
         }
       catch (const std::exception &error)
         {

@@ -22,14 +22,58 @@ namespace axiforge::process
                 State                                &state,
                 std::unique_ptr<solvers::FlowSolver> &solver,
                 const Progress                       &progress,
-                const std::string                    &reason)
+                const std::string                    &reason,
+                const double                          size_factor = 1)
     {
       const Phase                 phase("remeshing");
-      const meshing::RemeshResult result = meshing::remesh(scene, state);
+      const meshing::RemeshResult result = meshing::remesh(scene, state, size_factor);
       progress.remeshed(state, reason, result);
       if (result.done)
         solver = std::make_unique<solvers::FlowSolver>(scene, state);
       return result.done;
+    }
+
+
+    /// The step once more on new meshes, the first of the usual size, where the step has failed.
+    StepRecord step_on_another_mesh(const scene::Scene                   &scene,
+                                    State                                &state,
+                                    std::unique_ptr<solvers::FlowSolver> &solver,
+                                    const Progress                       &progress,
+                                    const StepRecord                     &last,
+                                    const bool                            is_fresh)
+    {
+      constexpr unsigned int repeats   = 4;
+      constexpr double       factors[] = { 1, 0.8, 0.65, 1.25 };
+      unsigned int           n_meshes  = is_fresh ? 1 : 0;
+      for (const double factor : factors)
+        {
+          if (is_fresh && factor == 1)
+            continue; // it would be the same mesh
+          if (!remesh(scene, state, solver, progress,
+                      n_meshes == 0 ? "a step failed" : "the step failed on the new mesh, too",
+                      factor))
+            continue;
+          ++n_meshes;
+          try
+            {
+              return advance(scene, state, *solver, choose_step_size(scene, state, last), last,
+                             repeats);
+            }
+          catch (const ComputationError &)
+            {
+              // The next mesh, or the last one with as short steps as are allowed.
+            }
+        }
+      try
+        {
+          return advance(scene, state, *solver, choose_step_size(scene, state, last), last);
+        }
+      catch (const ComputationError &error)
+        {
+          throw ComputationError(fmt::format(
+              "{} {} new mesh{} of other sizes did not help.", error.what(),
+              n_meshes == 0 ? "No" : std::to_string(n_meshes), n_meshes == 1 ? "" : "es"));
+        }
     }
 
 
@@ -40,22 +84,23 @@ namespace axiforge::process
                     const Progress                       &progress,
                     const StepRecord                     &last)
     {
-      constexpr unsigned int repeats_before_remeshing = 2;
+      constexpr unsigned int repeats_before_remeshing = 2, repeats_on_fresh_mesh = 4;
       if constexpr (!optional_features)
         return advance(scene, state, *solver, choose_step_size(scene, state, last), last);
       if (const std::string reason = meshing::reason_to_remesh(scene, state); !reason.empty())
         remesh(scene, state, solver, progress, reason);
-      if (scene.remeshing.enabled && state.step > 0 && state.remeshing.last_attempt < state.step)
-        try
-          {
-            return advance(scene, state, *solver, choose_step_size(scene, state, last), last,
-                           repeats_before_remeshing);
-          }
-        catch (const ComputationError &)
-          {
-            remesh(scene, state, solver, progress, "a step failed");
-          }
-      return advance(scene, state, *solver, choose_step_size(scene, state, last), last);
+      if (!scene.remeshing.enabled)
+        return advance(scene, state, *solver, choose_step_size(scene, state, last), last);
+      const bool is_fresh = state.step > 0 && state.remeshing.last_attempt == state.step;
+      try
+        {
+          return advance(scene, state, *solver, choose_step_size(scene, state, last), last,
+                         is_fresh ? repeats_on_fresh_mesh : repeats_before_remeshing);
+        }
+      catch (const ComputationError &)
+        {
+          return step_on_another_mesh(scene, state, solver, progress, last, is_fresh);
+        }
     }
 
 

@@ -56,6 +56,16 @@ namespace axiforge::process
     }
 
 
+    /// Largest effective strain rate that the cells remember [1/s].
+    double largest_rate(const State &state)
+    {
+      double rate = 0;
+      for (const CellHistory &cell : state.cell_history)
+        rate = std::max(rate, *std::max_element(cell.strain_rate.begin(), cell.strain_rate.end()));
+      return MPI::max(rate, state.communicator);
+    }
+
+
     /// Speed [mm/s] that decides the reduction: of the fastest tool now, or that of the scene.
     double fastest(const scene::Scene &scene, const double time)
     {
@@ -161,13 +171,21 @@ namespace axiforge::process
     double step = plain_step(scene, state);
     if (!given && state.step > 0)
       {
-        if (last.largest_strain_rate > 0)
-          step = std::min(step, limits.largest_strain_increment / last.largest_strain_rate);
+        // A new mesh has its own largest rate.
+        const bool is_fresh =
+            state.remeshing.count > 0 && state.remeshing.last_attempt == state.step;
+        const double rate = is_fresh ? largest_rate(state) : last.largest_strain_rate;
+        if (rate > 0)
+          step = std::min(step, limits.largest_strain_increment / rate);
         step = std::min(step, limits.largest_motion * shortest_distortion_time(state));
       }
     if (state.step > 0)
       step = std::min(step, step_for_target(scene, last));
-    if (step < limits.smallest_step * plain_step(scene, state))
+    const double shortest = limits.smallest_step * plain_step(scene, state);
+    if (state.remeshing.count > 0 && state.remeshing.last_attempt == state.step)
+      step =
+          std::max(step, shortest); // velocities carried to a new mesh may be rugged: it is tried
+    if (step < shortest)
       throw ComputationError(fmt::format(
           "The run can't go on at time {:.6g} s, stroke {:.6g} mm, step {}: the flow has become so "
           "uneven that a step would have to be {:.3g} s short, less than \"Time stepping/Smallest "

@@ -3,9 +3,9 @@
 
 /**
  * What geometric decisions take for round-off, all in one place and all relative to the size of the
- * workpiece (its largest extent at the start): nothing is decided by a comparison with exact zero or
- * by a last digit, which differs from processor to processor. Positions are exact to about 1e-15 of
- * the size and are moved by velocities that are solved to "Flow solver/Tolerance".
+ * workpiece (its largest extent at the start): nothing is decided by a comparison with exact zero
+ * or by a last digit, which differs from processor to processor. Positions are exact to about 1e-15
+ * of the size and are moved by velocities that are solved to "Flow solver/Tolerance".
  */
 namespace axiforge::tolerance
 {

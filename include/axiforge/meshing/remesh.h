@@ -35,8 +35,9 @@ namespace axiforge::meshing
    * section 11. The boundary keeps its names, nodes on tools stay on them, the volume is restored
    * by the free surface. Everything that looks into the state's mesh (FlowSolver) has to be made
    * anew. Collective.
+   * @param size_factor on the element size, for another mesh than the one that did not help
    */
-  RemeshResult remesh(const scene::Scene &scene, State &state);
+  RemeshResult remesh(const scene::Scene &scene, State &state, double size_factor = 1);
 
   /// One line for the screen.
   std::string describe(const RemeshResult &result);
