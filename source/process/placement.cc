@@ -14,10 +14,6 @@ namespace axiforge::process
 {
   namespace
   {
-    /// How short of the tool the workpiece stops, over its size.
-    constexpr double touching = 1e-9;
-
-
     const scene::ToolParameters &find_tool(const scene::SceneParameters &parameters)
     {
       std::vector<std::string> names;
@@ -42,7 +38,7 @@ namespace axiforge::process
       // It is the same whether the workpiece comes down or the tool comes up.
       const Vector2 way =
           tools::bring_to_contact(profile, outline.boundary_points, Vector2({ 0., 1. }),
-                                  touching * (outline.upper - outline.lower).norm(), section);
+                                  tools::touching_tolerance * (outline.upper - outline.lower).norm(), section);
       move_axially(state, -way[1]);
     }
   } // namespace
@@ -69,7 +65,7 @@ namespace axiforge::process
       held |= boundary.is_velocity;
     if (held)
       return 0;
-    const double tolerance = touching * (outline.upper - outline.lower).norm();
+    const double tolerance = tools::touching_tolerance * (outline.upper - outline.lower).norm();
     double       first     = std::numeric_limits<double>::infinity();
     bool         any       = false;
     for (const scene::Tool &tool : scene.tools)

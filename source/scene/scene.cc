@@ -99,16 +99,27 @@ namespace axiforge::scene
     }
 
 
-    /// A tool that is brought to the workpiece stops short of it by this share of its size at most.
-    constexpr double touching = 1e-9;
-
-
     std::string list(const std::vector<std::string> &names)
     {
       std::string text;
       for (const std::string &name : names)
         text += (text.empty() ? "" : ", ") + name;
       return text.empty() ? "(none)" : text;
+    }
+
+
+    /// Which side of its profile is the tool's is a guess where the workpiece lies on both: the
+    /// smaller part of it is taken for the overlap.
+    std::string describe_overlap(const tools::Penetration &behind,
+                                 const tools::Penetration &in_front)
+    {
+      const bool                swapped = in_front.gap > 0 && in_front.gap < -behind.gap;
+      const tools::Penetration &inside = swapped ? in_front : behind, &outside = swapped ? behind : in_front;
+      return fmt::format("the tool starts inside the workpiece: they overlap by {:.4g} mm at r = "
+                         "{:.6g} mm, z = {:.6g} mm, and the workpiece lies up to {:.4g} mm on the "
+                         "other side of the profile",
+                         std::abs(inside.gap), inside.place[0], inside.place[1],
+                         std::abs(outside.gap));
     }
 
 
@@ -136,12 +147,11 @@ namespace axiforge::scene
                 "Set \"Start = as drawn\"; \"Placement/Rest on\" puts the workpiece "
                 "on a tool that rests");
           tools::bring_to_contact(tool.profile, outline.boundary_points, way / way.norm(),
-                                  touching * (outline.upper - outline.lower).norm(), section);
+                                  tools::touching_tolerance * (outline.upper - outline.lower).norm(), section);
         }
       else
         tool.profile.orient(outline.boundary_points);
 
-      // Which side is the tool's is a guess if the workpiece lies on both: say how far on each.
       const double       size = (outline.upper - outline.lower).norm();
       tools::Penetration behind, in_front;
       for (const Point &x : outline.boundary_points)
@@ -154,29 +164,32 @@ namespace axiforge::scene
           if (contacts[0].gap > in_front.gap)
             in_front = { contacts[0].gap, x };
         }
-      if (behind.gap < -1e-6 * size)
+      if (behind.gap < -tools::overlap_tolerance * size)
         throw InputError::entry(
             section + "/Geometry file", parameters.geometry.file,
-            fmt::format("the tool starts inside the workpiece, which reaches {:.4g} mm behind the "
-                        "tool's profile at r = {:.6g} mm, z = {:.6g} mm and {:.4g} mm in front of "
-                        "it at r = {:.6g} mm, z = {:.6g} mm",
-                        -behind.gap, behind.place[0], behind.place[1], in_front.gap,
-                        in_front.place[0], in_front.place[1]),
+            describe_overlap(behind, in_front),
             "a tool that touches the workpiece or stands off",
-            "Move the tool's geometry back, or the workpiece");
+            in_front.gap < -behind.gap
+                ? "Move the tool's geometry or the workpiece by that much, or draw the profile the "
+                  "other way round if the tool is meant to be on its other side"
+                : "Move the tool's geometry back, or the workpiece");
       return tool;
     }
 
 
     Region make_region(const RegionParameters  &parameters,
                        const std::vector<Tool> &tools,
-                       const bool               refines)
+                       const bool               refines,
+                       const bool               remeshes)
     {
       const std::string section = "Region " + parameters.name;
       if (!refines)
-        throw InputError::entry("Regions", parameters.name, "the mesh of this run stays as it is",
-                                "regions with \"Refinement/Enabled = true\" or a target accuracy",
-                                "Set it, or leave \"Regions\" empty");
+        throw InputError::entry(
+            "Regions", parameters.name,
+            "a region divides cells, and \"Refinement/Enabled\" is false" +
+                std::string(remeshes ? ": a new mesh takes no notice of regions" : ""),
+            "regions with \"Refinement/Enabled = true\" or a target accuracy",
+            "Set it, or leave \"Regions\" empty");
       Region region{ parameters.name, Point(parameters.lower), Point(parameters.upper),
                      no_tool,         parameters.element_size, parameters.level };
       for (unsigned int c = 0; c < 2; ++c)
@@ -351,7 +364,7 @@ namespace axiforge::scene
         flow.tolerance              = std::min(flow.tolerance, 0.01 * accuracy.target);
       }
     for (const RegionParameters &region : parameters.regions)
-      regions.push_back(make_region(region, tools, refinement.enabled));
+      regions.push_back(make_region(region, tools, refinement.enabled, remeshing.enabled));
 
     if (flow.iterated() && flow.penalty < 10 / flow.regularisation)
       throw InputError::entry("Flow solver/Penalty", fmt::format("{}", flow.penalty),

@@ -9,6 +9,49 @@
 
 namespace axiforge::tools
 {
+  namespace
+  {
+    /// A surface that moves along itself, or away, does not come closer: it may touch and slide.
+    constexpr double sliding = 0.02;
+
+    /// Along such a surface the way goes on in steps of this share of the points' extent at least.
+    constexpr double sliding_step = 0.005;
+
+
+    /// What a place on the way says.
+    struct Clearance
+    {
+      double safe_way = std::numeric_limits<double>::infinity(); ///< that surely meets nothing [mm]
+      double deepest  = 0; ///< smallest gap, if it is negative [mm]
+    };
+
+
+    Clearance clearance(const Profile            &profile,
+                        const std::vector<Point> &points,
+                        const Vector2            &direction,
+                        const double              travel,
+                        const double              size)
+    {
+      Clearance              result;
+      std::array<Contact, 2> found;
+      for (const Point &x : points)
+        {
+          const unsigned int n =
+              profile.find(Point(x - travel * direction), result.safe_way, found);
+          for (unsigned int i = 0; i < n; ++i)
+            {
+              const bool closes = found[i].normal * direction >= sliding;
+              result.safe_way   = std::min(
+                    result.safe_way,
+                    closes ? found[i].gap : std::max(found[i].gap, sliding_step * size));
+              result.deepest = std::min(result.deepest, found[i].gap);
+            }
+        }
+      return result;
+    }
+  } // namespace
+
+
   double travel_to_contact(const Profile            &profile,
                            const std::vector<Point> &points,
                            const Vector2            &direction,
@@ -19,26 +62,37 @@ namespace axiforge::tools
     Box body;
     for (const Point &x : points)
       body.add(x);
-    const double farthest = 2 * (profile.bounding_box().size() + body.size() +
+    const double size     = body.size();
+    const double farthest = 2 * (profile.bounding_box().size() + size +
                                  std::sqrt(body.distance_square(profile.bounding_box().lower)) + 1);
 
-    // A surface that moves along itself does not come closer: it may touch and slide.
-    constexpr double sliding = 0.02;
-    double           travel  = 0;
+    // A wall that touches all along the way may stand a rounding error inside from the start.
+    const double deepest =
+        clearance(profile, points, direction, 0, size).deepest - sunk_tolerance * size;
+    const auto touches = [&](const Clearance &here) {
+      return here.safe_way <= tolerance || here.deepest < deepest;
+    };
+    double travel = 0, before = 0;
     for (unsigned int i = 0; i < 100000 && travel < farthest; ++i)
       {
-        double nearest = never;
-        for (const Point &x : points)
+        const Clearance here = clearance(profile, points, direction, travel, size);
+        if (touches(here))
           {
-            std::array<Contact, 2> found;
-            if (profile.find(Point(x - travel * direction), nearest, found) > 0)
-              nearest = std::min(nearest, std::abs(found[0].normal * direction) < sliding
-                                              ? std::max(found[0].gap, 0.005 * body.size())
-                                              : found[0].gap);
+            if (here.safe_way > 0 && here.deepest >= deepest)
+              return travel;
+            // A step along a wall may have gone beyond the place where it bends into the way.
+            while (travel - before > 0.1 * tolerance)
+              {
+                const double middle = 0.5 * (before + travel);
+                if (middle <= before || middle >= travel)
+                  break;
+                (touches(clearance(profile, points, direction, middle, size)) ? travel : before) =
+                    middle;
+              }
+            return before;
           }
-        if (nearest <= tolerance)
-          return travel;
-        travel += std::min(nearest - 0.5 * tolerance, farthest);
+        before = travel;
+        travel += std::min(here.safe_way - 0.5 * tolerance, farthest);
       }
     return never;
   }

@@ -8,8 +8,21 @@
 namespace axiforge::tools
 {
   /**
+   * Tolerances of placing tools and workpiece, over the workpiece's size: a body that is brought to
+   * another one stops `touching_tolerance` short of it; along a wall that it touches and that bends
+   * into its way (a fillet in a die of its own radius) it sinks in by `sunk_tolerance`, since gaps
+   * grow there with the square of the way; and what overlaps by more than `overlap_tolerance` is
+   * refused. Each has to be well below the next.
+   */
+  constexpr double touching_tolerance = 1e-9;
+  constexpr double sunk_tolerance     = 1e-7;
+  constexpr double overlap_tolerance  = 1e-6;
+
+  /**
    * How far [mm] an oriented profile, clear of all points, can travel along a unit direction until
-   * it touches the first of them: to within @p tolerance [mm] short of it, never beyond.
+   * it touches the first of them: to within @p tolerance [mm] short of it, and beyond only where a
+   * wall along the way bends into it, see sunk_tolerance. Surfaces that touch and move away or along
+   * themselves do not count.
    * @return infinity if it passes all of them
    *
    * Conservative advancement (B. Mirtich, 1996): the smallest gap is a way that is safe whatever
