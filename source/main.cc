@@ -64,6 +64,8 @@ int main(int argc, char **argv)
   // Not required() of the program itself: the scene of a study belongs to the word study.
   add_scene_options(app, options);
   add_scene_options(*study, options);
+  study->add_flag("--validate", options.validate,
+                  "Read and check the scene of every value, meshes included; run nothing");
   CLI::Option *resume =
       app.add_option("--resume", options.resume_from,
                      "Continue from the checkpoint in the folder of the results, or from this one")

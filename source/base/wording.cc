@@ -125,6 +125,11 @@ namespace axiforge
     return best;
   }
 
+  std::string counted(const std::size_t number, const std::string &noun)
+  {
+    return std::to_string(number) + " " + noun + (number == 1 ? "" : "s");
+  }
+
   std::string list_in_words(const std::vector<std::string> &names)
   {
     std::string text;

@@ -13,6 +13,7 @@
 #include <axiforge/base/errors.h>
 #include <axiforge/base/gmsh_session.h>
 #include <axiforge/meshing/mesh_checks.h>
+#include <axiforge/meshing/straight_lines.h>
 #include <axiforge/meshing/workpiece_mesh.h>
 
 namespace axiforge::meshing
@@ -155,6 +156,27 @@ namespace axiforge::meshing
       gmsh::option::setNumber("Mesh.MshFileVersion", 4.1);
     }
 
+    /// An element size that makes more elements than anyone can compute with.
+    void check_element_size(const Source &source, const std::vector<int> &surfaces)
+    {
+      constexpr double most = 1e7;
+      const double     size = source.parameters.element_size;
+      if (!(size > 0))
+        return;
+      double area = 0;
+      for (const int surface : surfaces)
+        {
+          double x[2], y[2], z[2];
+          gmsh::model::getBoundingBox(2, surface, x[0], y[0], z[0], x[1], y[1], z[1]);
+          area += (x[1] - x[0]) * (y[1] - y[0]);
+        }
+      if (area / size / size > most)
+        throw InputError::entry(
+            source.section + "/Element size", fmt::format("{:.6g}", size),
+            fmt::format("the workpiece would have {:.3g} elements", area / size / size),
+            fmt::format("0, or at least {:.3g} mm", std::sqrt(area / most)));
+    }
+
     void generate_mesh(const Source &source, const std::vector<int> &surfaces)
     {
       gmsh::vectorpair all;
@@ -171,6 +193,7 @@ namespace axiforge::meshing
       if (algorithm == 8)
         gmsh::option::setNumber("Mesh.Algorithm", algorithm = 6);
       const double size = source.parameters.element_size;
+      check_element_size(source, surfaces);
       if (size > 0)
         {
           gmsh::option::setNumber("Mesh.MeshSizeFromPoints", 0);
@@ -376,13 +399,26 @@ namespace axiforge::meshing
       return names;
     }
 
+    /// An edge along the axis that is too far off to be put there and too near to be a bore.
+    void check_bore(const Source &source, const WorkpieceMesh &mesh, const Edge &edge)
+    {
+      const Point  a = mesh.vertices[edge.first], b = mesh.vertices[edge.second];
+      const double size = size_of_mesh(mesh), off = std::max(std::abs(a[0]), std::abs(b[0]));
+      if (off < smallest_bore * size && std::abs(a[1] - b[1]) > 0.5 * a.distance(b))
+        throw source.wrong(fmt::format("its edge from r = {:.6g}, z = {:.6g} mm to r = {:.6g}, z = "
+                                       "{:.6g} mm is neither on the axis r = 0 nor a bore (what is "
+                                       "less than {:.2g} mm off is taken for the axis)",
+                                       a[0], a[1], b[0], b[1], line_tolerance * size),
+                           "Draw the axis on r = 0");
+    }
+
     /// The axis is what lies at r = 0, whether it has that name or none.
     void name_axis(const Source                &source,
                    const WorkpieceMesh         &mesh,
                    const std::map<Edge, Point> &boundary,
                    std::map<Edge, std::string> &names)
     {
-      const double tolerance = 1e-9 * size_of_mesh(mesh);
+      const double tolerance = line_rounding * size_of_mesh(mesh);
       for (const auto &[edge, middle] : boundary)
         {
           const bool at_zero = std::abs(mesh.vertices[edge.first][0]) <= tolerance &&
@@ -402,6 +438,8 @@ namespace axiforge::meshing
                             "which is not on r = 0",
                             middle[0], middle[1]),
                 "The axis is found by itself; give this curve another name");
+          else if (!at_zero)
+            check_bore(source, mesh, edge);
         }
     }
 
@@ -440,9 +478,15 @@ namespace axiforge::meshing
                        const std::map<std::size_t, unsigned int> &numbers,
                        WorkpieceMesh                             &mesh)
     {
-      const std::map<Edge, Point> boundary = find_boundary(source, mesh);
+      std::map<Edge, Point>       boundary = find_boundary(source, mesh);
       std::map<Edge, std::string> names    = names_of_edges(source, numbers, boundary);
       name_axis(source, mesh, boundary, names);
+      std::set<Edge> symmetry;
+      for (const auto &[edge, name] : names)
+        if (name == "symmetry")
+          symmetry.insert(edge);
+      put_on_symmetry(symmetry, mesh);
+      boundary = find_boundary(source, mesh);
       check_symmetry(source, mesh, boundary, names);
 
       std::set<std::string> others;
@@ -463,21 +507,6 @@ namespace axiforge::meshing
           mesh.boundary_ids[name] = ids.at(name);
           mesh.boundary_edges.push_back({ edge.first, edge.second, ids.at(name) });
         }
-    }
-
-    /// Nodes that belong on the axis are put there exactly: gmsh may miss it by a rounding error.
-    void put_on_axis(WorkpieceMesh &mesh)
-    {
-      const double tolerance = 1e-9 * size_of_mesh(mesh);
-      const auto   snap      = [&](Point &x) {
-        if (std::abs(x[0]) <= tolerance)
-          x[0] = 0;
-      };
-      for (Point &x : mesh.vertices)
-        snap(x);
-      for (std::array<Point, 9> &nodes : mesh.cell_nodes)
-        for (Point &x : nodes)
-          snap(x);
     }
   } // namespace
 

@@ -100,10 +100,10 @@ namespace axiforge::process
     {
       if (!operation_of(path).empty())
         path.erase(0, path.find('/') + 1);
-      for (const char *section :
-           { "Output/", "Checkpoint/", "Time stepping/", "Flow solver/", "Study/", "Folding/" })
+      for (const char *section : { "Output/", "Checkpoint/", "Time stepping/", "Flow solver/",
+                                   "Study/", "Folding/", "Remeshing/" })
         if (path.compare(0, std::string(section).size(), section) == 0)
-          return true;
+          return path != "Remeshing/Enabled"; // history.csv would have other columns
       return path == "Title" || path.compare(0, 12, "Process/End ") == 0 ||
              path == "Process/Dwell" || path == "Operations";
     }
@@ -265,7 +265,7 @@ namespace axiforge::process
       return InputError::entry(
           entry, is, fmt::format("the checkpoint \"{}\" was written with \"{}\"", path, was),
           "the value of the checkpoint; only title, end of the run, time stepping, flow solver, "
-          "folding, output and checkpoints may differ",
+          "limits of remeshing, folding, output and checkpoints may differ",
           "Put it back, or start without --resume");
     };
     for (const auto &[entry, value] : old_entries)

@@ -32,7 +32,9 @@ namespace axiforge::process
 
     std::string stroke_of(const scene::Scene &scene, const State &state, const double time_left)
     {
-      return time_left > 0
+      // Beyond the end nothing is known: tools stop, and a bore that closes at last does not
+      // matter.
+      return time_left > 0 && state.time + time_left <= scene.end_time()
                  ? fmt::format(", at about {:.6g} s, stroke {:.6g} mm, if it goes on "
                                "like this",
                                state.time + time_left, scene.stroke(state.time + time_left))

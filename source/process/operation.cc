@@ -4,6 +4,7 @@
 #include <axiforge/base/errors.h>
 #include <axiforge/base/features.h>
 #include <axiforge/base/phases.h>
+#include <axiforge/base/wording.h>
 #include <axiforge/meshing/remesh.h>
 #include <axiforge/process/accuracy.h>
 #include <axiforge/process/end_condition.h>
@@ -11,6 +12,7 @@
 #include <axiforge/process/mesh_change.h>
 #include <axiforge/process/operation.h>
 #include <axiforge/process/progress.h>
+#include <axiforge/process/scene_checks.h>
 #include <axiforge/process/step.h>
 
 namespace axiforge::process
@@ -122,7 +124,8 @@ namespace axiforge::process
           sum += sign * record.tools[i].force;
           largest = std::max(largest, std::abs(record.tools[i].force));
         }
-      return largest > 0 ? std::abs(sum) / largest : 0;
+      // Steps that press: before the contact closes on both sides there is nothing to balance.
+      return largest > least_force(scene) ? std::abs(sum) / largest : 0;
     }
 
 
@@ -150,6 +153,49 @@ namespace axiforge::process
   } // namespace
 
 
+  namespace
+  {
+    /// Of any tool in a step [N].
+    double largest_force_of(const StepRecord &record)
+    {
+      double largest = 0;
+      for (const ToolRecord &tool : record.tools)
+        largest = std::max({ largest, std::abs(tool.force), std::abs(tool.radial_force) });
+      return largest;
+    }
+
+
+    void throw_out_of_steps(const scene::Scene &scene, const State &state)
+    {
+      throw ComputationError(fmt::format(
+          "The run has stopped after {} (\"Time stepping/Most steps\" = {}) at time {:.6g} of "
+          "{:.6g} "
+          "s, stroke {:.6g} of {:.6g} mm: it has not come to its end. Allow more steps, or longer "
+          "ones.",
+          counted(state.step, "step"), scene.time.most_steps, state.time, scene.end_time(),
+          scene.stroke(state.time), scene.stroke(scene.end_time())));
+    }
+
+
+    /// A run in which nothing was formed is no result.
+    void check_formed(const scene::Scene &scene, const State &state, const double largest_force)
+    {
+      if (scene.driving_tool == no_tool || !scene.boundaries.empty() ||
+          largest_force > least_force(scene))
+        return;
+      throw ComputationError(fmt::format("Nothing has been formed up to stroke {:.6g} mm: no tool "
+                                         "ever bore a force, tool \"{}\" has "
+                                         "moved without resistance. The workpiece was not reached, "
+                                         "or was carried along as a rigid "
+                                         "body: it needs tools that reach it and something that "
+                                         "holds it (a tool on the other side, "
+                                         "a symmetry line).",
+                                         scene.stroke(state.time),
+                                         scene.tools[scene.driving_tool].name));
+    }
+  } // namespace
+
+
   void run_operation(const scene::Scene &scene,
                      State              &state,
                      output::Results    &results,
@@ -157,20 +203,22 @@ namespace axiforge::process
                      StepRecord          record,
                      ChainProgress      &chain,
                      const bool          quiet,
-                     const OnStep       &on_step)
+                     const OnStep       &on_step,
+                     const unsigned int  stop_after)
   {
     const unsigned int remeshings_before = state.remeshing.count - chain.present.remeshings;
     auto               solver            = std::make_unique<solvers::FlowSolver>(scene, state);
-    StepTimes          sum;
-    Progress           progress(scene, quiet);
-    FoldWatch          folds(scene, quiet);
+    double    largest_force = std::max(chain.present.largest_force, largest_force_of(record));
+    StepTimes sum;
+    Progress  progress(scene, quiet);
+    FoldWatch folds(scene, quiet);
     progress.start(state);
     checkpoints.enter(scene, chain, results);
     try
       {
         if (state.step == 0)
           adapt_at_start(scene, state, solver, choose_step_size(scene, state, record));
-        while (ended_by(scene, record).empty())
+        while (ended_by(scene, record).empty() && (stop_after == 0 || record.step < stop_after))
           {
             const Phase phase("steps");
             record = step(scene, state, solver, progress, record);
@@ -179,6 +227,7 @@ namespace axiforge::process
             record.remeshing_volume_jump = state.remeshing.volume_jump;
             record.remeshing_strain_jump = state.remeshing.strain_jump;
             add_step(scene, state, record, chain.present);
+            largest_force            = std::max(largest_force, largest_force_of(record));
             chain.present.remeshings = state.remeshing.count - remeshings_before;
             results.write(state, record);
             progress.step(record);
@@ -191,6 +240,8 @@ namespace axiforge::process
               progress.say(fmt::format("checkpoint after step {}", state.step));
           }
         chain.present.ended_by = ended_by(scene, record);
+        if (chain.present.ended_by == "steps" && stop_after == 0)
+          throw_out_of_steps(scene, state);
         checkpoints.at_end(state, record);
         results.write_fields(state);
         results.finish();
@@ -209,6 +260,7 @@ namespace axiforge::process
           }
         throw ComputationError(error.what() + advice);
       }
+    check_formed(scene, state, largest_force);
     progress.end(state, sum, solver->linear_system().analyse_seconds, results.directory());
   }
 } // namespace axiforge::process

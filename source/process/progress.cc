@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <algorithm>
 #include <iostream>
 
 #include <fmt/format.h>
 
+#include <axiforge/base/wording.h>
 #include <axiforge/process/accuracy.h>
 #include <axiforge/process/progress.h>
 
@@ -37,9 +39,10 @@ namespace axiforge::process
       std::cout << fmt::format("resumed after step {}, time {:.6g} s\n", state.step, state.time);
     if (!scene.title.empty())
       std::cout << scene.title << '\n';
-    std::cout << fmt::format("{} cells, {} unknowns, {} tools, end at {:.6g} s, stroke {:.6g} mm\n",
-                             state.tables.n_global_cells, state.n_unknowns(), scene.tools.size(),
-                             scene.end_time(), scene.stroke(scene.end_time()))
+    std::cout << fmt::format("{} cells, {} unknowns, {}, end at {:.6g} s, stroke {:.6g} mm\n",
+                             state.tables.n_global_cells, state.n_unknowns(),
+                             counted(scene.tools.size(), "tool"), scene.end_time(),
+                             scene.stroke(scene.end_time()))
               << std::flush;
   }
 
@@ -71,11 +74,14 @@ namespace axiforge::process
   {
     if (quiet || !report.changed)
       return;
-    std::cout << fmt::format("mesh adapted: {} cells, estimated error of the stress {:.2g}, "
-                             "changes of volume "
-                             "{:.1e}, of the strain's integral {:.1e}{}\n",
-                             report.cells, report.estimated_error, report.volume_change,
-                             report.strain_change,
+    std::cout << fmt::format("mesh adapted: {} cells, {}changes of volume {:.1e}, of the strain's "
+                             "integral {:.1e}{}\n",
+                             report.cells,
+                             report.estimated_error > 0
+                                 ? fmt::format("estimated error of the stress {:.2g}, ",
+                                               report.estimated_error)
+                                 : "",
+                             report.volume_change, report.strain_change,
                              report.refused
                                  ? fmt::format(", {} families kept for the outline", report.refused)
                                  : "")
@@ -101,14 +107,25 @@ namespace axiforge::process
   {
     if (quiet)
       return;
-    const double total = timer.wall_time();
-    std::cout << fmt::format("{} steps in {} ({:.1f} ms per step): cells {:.0f} %, contact and "
-                             "friction {:.0f} %, "
-                             "factorisation {:.0f} %, solve {:.0f} %, analysis {:.3f} s\n",
-                             state.step - start_step, duration(total),
-                             1e3 * total / std::max(1u, state.step - start_step),
-                             100 * (sum.assembly + sum.residual) / total, 100 * sum.contact / total,
-                             100 * sum.factor / total, 100 * sum.solve / total, analyse)
+    const double       total = timer.wall_time();
+    const unsigned int steps = state.step - start_step;
+    // In whole per cent, so that with the rest (meshes, estimates, files) they make 100.
+    long        rest = 100;
+    std::string shares;
+    for (const auto &[name, seconds] :
+         { std::make_pair("cells", sum.assembly + sum.residual),
+           std::make_pair("contact and friction", sum.contact),
+           std::make_pair("factorisation", sum.factor), std::make_pair("solve", sum.solve) })
+      {
+        const long share = std::clamp(std::lround(100 * seconds / total), 0l, rest);
+        rest -= share;
+        shares += fmt::format("{} {} %, ", name, share);
+      }
+    std::cout << fmt::format(
+                     "{} in {} ({:.1f} ms per step): {}all else {} %; analysis of the first "
+                     "matrix {:.3f} s\n",
+                     counted(steps, "step"), duration(total), 1e3 * total / std::max(1u, steps),
+                     shares, rest, analyse)
               << summary_of_errors(scene, state) << "Results: " << folder << '\n'
               << std::flush;
   }

@@ -9,6 +9,7 @@
 #include <axiforge/base/errors.h>
 #include <axiforge/base/features.h>
 #include <axiforge/base/phases.h>
+#include <axiforge/base/wording.h>
 #include <axiforge/meshing/initial_state.h>
 #include <axiforge/output/results.h>
 #include <axiforge/process/chain_summary.h>
@@ -16,6 +17,7 @@
 #include <axiforge/process/operation.h>
 #include <axiforge/process/placement.h>
 #include <axiforge/process/run.h>
+#include <axiforge/process/scene_checks.h>
 
 namespace axiforge::process
 {
@@ -23,10 +25,13 @@ namespace axiforge::process
   {
     std::string versions(const RunOptions &options, const MPI_Comm communicator)
     {
-      return fmt::format(
-          "axiforge {} (revision {})\ndeal.II {} ({})\n{} ranks\ncommand: {}\n", options.version,
-          options.revision, DEAL_II_PACKAGE_VERSION, DEAL_II_GIT_SHORTREV,
-          dealii::Utilities::MPI::n_mpi_processes(communicator), options.command_line);
+      return fmt::format("axiforge {} (revision {})\ndeal.II {}{}\n{}\ncommand: {}\n",
+                         options.version, options.revision, DEAL_II_PACKAGE_VERSION,
+                         std::string(DEAL_II_GIT_SHORTREV).empty()
+                             ? ""
+                             : std::string(" (") + DEAL_II_GIT_SHORTREV + ")",
+                         counted(dealii::Utilities::MPI::n_mpi_processes(communicator), "rank"),
+                         options.command_line);
     }
 
 
@@ -67,6 +72,15 @@ namespace axiforge::process
             "start without --resume.",
             path, state.initial_volume, volume));
       return extras;
+    }
+
+
+    void tell(const std::vector<std::string> &notes, const bool quiet)
+    {
+      for (const std::string &note : notes)
+        if (!quiet)
+          std::cout << "Note: " << note << '\n';
+      std::cout << std::flush;
     }
 
 
@@ -187,15 +201,15 @@ namespace axiforge::process
       chain.checkpoints.more_follow = k + 1 < chain.operations.size();
       run_operation(scene, state, results, chain.checkpoints,
                     resumed ? resumed->record : StepRecord(), chain.progress, chain.quiet,
-                    chain.options.on_step);
+                    chain.options.on_step, chain.options.stop_after);
     }
 
 
     /// The operations one after the other, the workpiece going through. Collective.
     void run_chain(Chain                          &chain,
-                   const meshing::WorkpieceMesh   &mesh,
                    State                          &state,
-                   std::optional<CheckpointExtras> resumed)
+                   std::optional<CheckpointExtras> resumed,
+                   std::unique_ptr<scene::Scene>   first_scene)
     {
       unsigned int first = 0;
       if (resumed)
@@ -210,20 +224,22 @@ namespace axiforge::process
           const scene::SceneParameters &operation = chain.operations[k];
           const bool                    resuming  = resumed && k == first;
           scene::in_operation(operation.operation, [&] {
-            if (!resuming)
+            std::unique_ptr<scene::Scene> scene = std::move(first_scene);
+            if (resuming)
+              scene = std::make_unique<scene::Scene>(operation, chain.progress.outline);
+            else
               {
-                const bool as_meshed = k == 0 && !operation.placement.any();
-                if (!as_meshed)
-                  place_workpiece(operation, state);
-                chain.progress.outline =
-                    as_meshed ? meshing::outline_of(mesh) : meshing::outline_of(state);
+                if (!scene)
+                  {
+                    Start start = start_operation(operation, nullptr, state);
+                    tell(start.notes, chain.quiet);
+                    scene                  = std::move(start.scene);
+                    chain.progress.outline = start.outline;
+                  }
                 chain.progress.present      = OperationSummary();
                 chain.progress.present.name = operation.operation;
               }
-            const scene::Scene scene(operation, chain.progress.outline);
-            if (!resuming)
-              state.time = time_of_first_contact(scene, chain.progress.outline, state);
-            run_one(chain, k, scene, state, resuming ? &*resumed : nullptr);
+            run_one(chain, k, *scene, state, resuming ? &*resumed : nullptr);
           });
           chain.progress.finished.push_back(chain.progress.present);
           if (chain.several())
@@ -237,6 +253,35 @@ namespace axiforge::process
         }
     }
   } // namespace
+
+
+  Start start_operation(const scene::SceneParameters &operation,
+                        const meshing::WorkpieceMesh *fresh,
+                        State                        &state)
+  {
+    const bool as_meshed = fresh && !operation.placement.any();
+    if (!as_meshed)
+      place_workpiece(operation, state);
+    Start start;
+    start.outline = as_meshed ? meshing::outline_of(*fresh) : meshing::outline_of(state);
+    start.scene   = std::make_unique<scene::Scene>(operation, start.outline);
+    start.notes   = check_before_run(*start.scene, start.outline, state);
+    state.time    = time_of_first_contact(*start.scene, start.outline, state);
+    return start;
+  }
+
+
+  void check_later_operations(const std::vector<scene::SceneParameters> &operations,
+                              scene::WorkpieceOutline                    outline)
+  {
+    // The shape that the workpiece will have is not known: no points, no placing against it.
+    outline.boundary_points.clear();
+    for (unsigned int k = 1; k < operations.size(); ++k)
+      scene::in_operation(operations[k].operation, [&] {
+        check_placement(operations[k]);
+        const scene::Scene check(operations[k], outline);
+      });
+  }
 
 
   void run(const RunOptions &options, const MPI_Comm communicator)
@@ -258,10 +303,6 @@ namespace axiforge::process
     meshing::WorkpieceMesh        mesh =
         meshing::read_workpiece(start.workpiece, "Workpiece", start.directory);
     meshing::share_from_first_rank(mesh, communicator);
-    // A run makes the scene before it writes anything; a chain has written its folder by then.
-    if (!start.placement.any() && (options.validate || !start.operation.empty()))
-      scene::in_operation(start.operation,
-                          [&] { const scene::Scene check(start, meshing::outline_of(mesh)); });
 
     const std::string               folder = results_folder(options, start);
     const std::string               all    = print_all(operations);
@@ -271,14 +312,24 @@ namespace axiforge::process
       resumed = resume(find_checkpoint(options.resume_from, folder), all, mesh, state);
     else
       meshing::make_initial_state(mesh, start.workpiece.refinement_levels, state);
+    // All operations are checked before anything is written.
+    Start ready;
+    if (!options.resume)
+      {
+        tell(mesh.notes, quiet);
+        tell(check_curves(operations, mesh.boundary_ids), quiet);
+        scene::in_operation(start.operation, [&] { ready = start_operation(start, &mesh, state); });
+        tell(ready.notes, quiet);
+      }
+    check_later_operations(operations, meshing::outline_of(mesh));
     if (options.validate)
       {
         if (first)
           std::cout << fmt::format("{} is sound: {} cells, {} unknowns, {}.\n", file.path(),
                                    state.tables.n_global_cells, state.n_unknowns(),
                                    start.operation.empty()
-                                       ? fmt::format("{} tools", start.tools.size())
-                                       : fmt::format("{} operations", operations.size()));
+                                       ? counted(start.tools.size(), "tool")
+                                       : counted(operations.size(), "operation"));
         return;
       }
     start_phase.reset();
@@ -286,6 +337,7 @@ namespace axiforge::process
                  folder,  { file.resolved_text(), all, versions(options, communicator) },
                  quiet,   { folder, all },
                  {} };
-    run_chain(chain, mesh, state, std::move(resumed));
+    chain.progress.outline = ready.outline;
+    run_chain(chain, state, std::move(resumed), std::move(ready.scene));
   }
 } // namespace axiforge::process

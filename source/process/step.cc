@@ -189,9 +189,12 @@ namespace axiforge::process
       throw ComputationError(fmt::format(
           "The run can't go on at time {:.6g} s, stroke {:.6g} mm, step {}: the flow has become so "
           "uneven that a step would have to be {:.3g} s short, less than \"Time stepping/Smallest "
-          "step\" = {} of the usual one. The mesh is used up: take a finer or a graded mesh, or "
-          "\"Remeshing/Enabled = true\".",
-          state.time, scene.stroke(state.time), state.step + 1, step, limits.smallest_step));
+          "step\" = {} of the usual one. The mesh is used up: {}.",
+          state.time, scene.stroke(state.time), state.step + 1, step, limits.smallest_step,
+          scene.remeshing.enabled
+              ? "take smaller cells (\"Remeshing/Element size\") or an earlier new mesh "
+                "(\"Remeshing/Smallest Jacobian\")"
+              : "start again with a finer or a graded mesh, or with \"Remeshing/Enabled = true\""));
     // What is left is shared out evenly, so that the last step is no splinter.
     return left / std::max(1., std::ceil(left / step - 1e-6));
   }

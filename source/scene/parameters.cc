@@ -87,7 +87,8 @@ namespace axiforge::scene
                       "A step that fails is repeated with half its length until it is shorter than "
                       "this share of the step that was wanted; then the run ends (status 2).",
                       Patterns::Double(1e-12, 1));
-    prm.add_parameter("Most steps", most_steps, "The run ends after so many steps.",
+    prm.add_parameter("Most steps", most_steps,
+                      "A run that needs more stops after so many, with a checkpoint and status 2.",
                       Patterns::Integer(1));
   }
 

@@ -114,7 +114,8 @@ namespace axiforge::scene
                                  const tools::Penetration &in_front)
     {
       const bool                swapped = in_front.gap > 0 && in_front.gap < -behind.gap;
-      const tools::Penetration &inside = swapped ? in_front : behind, &outside = swapped ? behind : in_front;
+      const tools::Penetration &inside  = swapped ? in_front : behind,
+                               &outside = swapped ? behind : in_front;
       return fmt::format("the tool starts inside the workpiece: they overlap by {:.4g} mm at r = "
                          "{:.6g} mm, z = {:.6g} mm, and the workpiece lies up to {:.4g} mm on the "
                          "other side of the profile",
@@ -146,11 +147,22 @@ namespace axiforge::scene
                 "'touching' for a tool that moves",
                 "Set \"Start = as drawn\"; \"Placement/Rest on\" puts the workpiece "
                 "on a tool that rests");
-          tools::bring_to_contact(tool.profile, outline.boundary_points, way / way.norm(),
-                                  tools::touching_tolerance * (outline.upper - outline.lower).norm(), section);
+          if (!outline.boundary_points.empty())
+            tools::bring_to_contact(
+                tool.profile, outline.boundary_points, way / way.norm(),
+                tools::touching_tolerance * (outline.upper - outline.lower).norm(), section);
         }
-      else
+      else if (!outline.boundary_points.empty())
         tool.profile.orient(outline.boundary_points);
+
+      if (const auto crossing = tools::self_crossing(tool.profile))
+        throw InputError::entry(
+            section + "/Geometry file", parameters.geometry.file,
+            fmt::format("the tool's profile crosses itself at r = {:.6g} mm, z = "
+                        "{:.6g} mm: it has no inside there",
+                        (*crossing)[0], (*crossing)[1]),
+            "a line or a closed curve that does not meet itself",
+            "Shorten the curves at that place, or leave one out");
 
       const double       size = (outline.upper - outline.lower).norm();
       tools::Penetration behind, in_front;
@@ -167,8 +179,7 @@ namespace axiforge::scene
       if (behind.gap < -tools::overlap_tolerance * size)
         throw InputError::entry(
             section + "/Geometry file", parameters.geometry.file,
-            describe_overlap(behind, in_front),
-            "a tool that touches the workpiece or stands off",
+            describe_overlap(behind, in_front), "a tool that touches the workpiece or stands off",
             in_front.gap < -behind.gap
                 ? "Move the tool's geometry or the workpiece by that much, or draw the profile the "
                   "other way round if the tool is meant to be on its other side"
@@ -177,8 +188,21 @@ namespace axiforge::scene
     }
 
 
+    /// Cells so small that their number, or the rounding errors in them, are beyond sense.
+    void check_element_size(const std::string &entry, const double given, const double size)
+    {
+      constexpr double smallest = 1e-5; // over the size
+      if (given > 0 && given < smallest * size)
+        throw InputError::entry(entry, fmt::format("{:.6g}", given),
+                                "cells of this size are no mesh of the workpiece",
+                                fmt::format("0, or at least {:.3g} mm ({} of the workpiece's size)",
+                                            smallest * size, smallest));
+    }
+
+
     Region make_region(const RegionParameters  &parameters,
                        const std::vector<Tool> &tools,
+                       const double             size,
                        const bool               refines,
                        const bool               remeshes)
     {
@@ -204,6 +228,7 @@ namespace axiforge::scene
             section + "/Element size", "0",
             "the region says neither how large its cells may be nor their level",
             "a size [mm], or a level", "Give one of the two");
+      check_element_size(section + "/Element size", region.element_size, size);
       std::vector<std::string> names;
       for (unsigned int i = 0; i < tools.size(); ++i)
         {
@@ -222,6 +247,69 @@ namespace axiforge::scene
 
   namespace
   {
+    /// Steps that are lost in the rounding errors, or more of them than anyone waits for.
+    void check_steps(const TimeParameters &time, const Scene &scene)
+    {
+      constexpr double smallest_travel = 1e-8; // over the size
+      constexpr double most            = 1e7;
+      const bool       by_stroke       = time.stroke_per_step > 0;
+      if (!by_stroke && time.time_step == 0)
+        return;
+      const std::string entry =
+          by_stroke ? "Time stepping/Stroke per step" : "Time stepping/Time step";
+      const double given = by_stroke ? time.stroke_per_step : time.time_step;
+      const double least =
+          smallest_travel * scene.size / (by_stroke ? 1 : scene.characteristic_speed);
+      if (given < least)
+        throw InputError::entry(entry, fmt::format("{:.6g}", given),
+                                "the tools would travel less than rounding errors let tell",
+                                fmt::format("0, or at least {:.3g} {} ({} of the workpiece's size)",
+                                            least, by_stroke ? "mm" : "s", smallest_travel));
+      const ProcessParameters &process = scene.process;
+      const bool               ends_earlier =
+          process.end_force > 0 || process.end_height > 0 || process.end_fill > 0;
+      const double steps = (by_stroke ? scene.stroke(scene.end_time()) : scene.end_time()) / given;
+      if (steps > most && time.most_steps > 1 && !ends_earlier)
+        throw InputError::entry(entry, fmt::format("{:.6g}", given),
+                                fmt::format("the run would take {:.3g} steps", steps),
+                                fmt::format("steps that make {:.0e} of the whole at most", most),
+                                "Take longer steps, or 0: they are chosen then");
+    }
+
+
+    /// A ring of a tool cannot be drawn in to nothing, nor material be moved through the axis.
+    void check_axis(const Scene &scene)
+    {
+      const double tolerance = tools::overlap_tolerance * scene.size;
+      for (const Tool &tool : scene.tools)
+        {
+          double lowest = 0, highest = 0; // radial displacements
+          for (unsigned int i = 0; i <= 1000; ++i)
+            {
+              const double way = tool.motion.displacement(scene.end_time() * i / 1000)[0];
+              lowest           = std::min(lowest, way);
+              highest          = std::max(highest, way);
+            }
+          const double inner = tool.profile.bounding_box().lower[0];
+          if (highest - lowest <= tolerance || inner + lowest > tolerance)
+            continue;
+          const bool on_axis = inner <= tolerance;
+          throw InputError::entry(
+              "Tool " + tool.name + "/Motion",
+              fmt::format("radial way {:.6g} mm", on_axis && highest > -lowest ? highest : lowest),
+              on_axis
+                  ? "the tool reaches the axis r = 0, where it can't move in r: it would open or "
+                    "pass through itself"
+                  : fmt::format("the tool, {:.6g} mm from the axis at its innermost, would pass "
+                                "through the axis r = 0",
+                                inner),
+              "an axial motion, or for a tool clear of the axis a radial one that keeps it clear",
+              "Set \"Velocity = 0, V\" or \"Direction = 0, -1\": (r, z) is the order of the "
+              "components");
+        }
+    }
+
+
     void check_end_conditions(const ProcessParameters &process, const bool tool_moves)
     {
       if (process.end_force > 0 && !tool_moves)
@@ -364,8 +452,9 @@ namespace axiforge::scene
         flow.tolerance              = std::min(flow.tolerance, 0.01 * accuracy.target);
       }
     for (const RegionParameters &region : parameters.regions)
-      regions.push_back(make_region(region, tools, refinement.enabled, remeshing.enabled));
+      regions.push_back(make_region(region, tools, size, refinement.enabled, remeshing.enabled));
 
+    check_element_size("Remeshing/Element size", remeshing.element_size, size);
     if (flow.iterated() && flow.penalty < 10 / flow.regularisation)
       throw InputError::entry("Flow solver/Penalty", fmt::format("{}", flow.penalty),
                               "too small for the iterated penalty to converge with \"Flow solver/"
@@ -425,6 +514,8 @@ namespace axiforge::scene
             end_time_ = high;
           }
       }
+    check_steps(parameters.time, *this);
+    check_axis(*this);
     for (unsigned int i = 0; i < tools.size(); ++i)
       if (tools[i].motion.end_time() < end_time_ * (1 - 1e-12))
         throw InputError::entry(

@@ -44,64 +44,107 @@ namespace axiforge
   }
 
 
+  namespace
+  {
+    constexpr unsigned int n    = 4000; // columns
+    constexpr double       none = std::numeric_limits<double>::infinity();
+
+    struct Columns
+    {
+      std::vector<double> floor, ceiling; ///< [mm]; infinite where no tool bounds the column
+    };
+
+
+    Columns columns_within(const scene::Scene &scene,
+                           const State        &state,
+                           const double        radius,
+                           const double        time)
+    {
+      double low = none, high = -none; // of the symmetry line
+      for (const BoundaryNode &node : state.tables.boundary_nodes)
+        if (node.on_symmetry && std::abs(node.symmetry_normal[1]) > 0.99)
+          {
+            low  = std::min(low, state.node_position(node.node)[1]);
+            high = std::max(high, state.node_position(node.node)[1]);
+          }
+      low  = MPI::min(low, state.communicator);
+      high = MPI::max(high, state.communicator);
+
+      double lowest = none, highest = -none;
+      for (const BoundaryNode &node : state.tables.boundary_nodes)
+        {
+          lowest  = std::min(lowest, state.node_position(node.node)[1]);
+          highest = std::max(highest, state.node_position(node.node)[1]);
+        }
+      const double middle =
+          0.5 * (MPI::min(lowest, state.communicator) + MPI::max(highest, state.communicator));
+      const bool has_symmetry = low <= high, below = has_symmetry && low < middle;
+
+      std::vector<double> floor(n, has_symmetry && below ? low : -none),
+          ceiling(n, has_symmetry && !below ? high : none);
+      const double width = radius / n;
+      for (const scene::Tool &tool : scene.tools)
+        {
+          const Vector2 shift = tool.motion.displacement(time);
+          for (const std::vector<Point> &line : tool.profile.sample(1e-5 * scene.size))
+            for (unsigned int i = 0; i + 1 < line.size(); ++i)
+              {
+                const Point a = line[i] + shift, b = line[i + 1] + shift;
+                // The workpiece's side is on the left: what runs outwards looks up.
+                const bool         looks_up = b[0] > a[0];
+                const double       from = std::min(a[0], b[0]), to = std::max(a[0], b[0]);
+                const unsigned int first = static_cast<unsigned int>(
+                    std::clamp(std::ceil(from / width - 0.5), 0., static_cast<double>(n)));
+                for (unsigned int k = first; k < n && (k + 0.5) * width <= to; ++k)
+                  {
+                    const double z =
+                        a[1] + ((k + 0.5) * width - a[0]) / (b[0] - a[0]) * (b[1] - a[1]);
+                    if (looks_up)
+                      floor[k] = std::max(floor[k], z);
+                    else
+                      ceiling[k] = std::min(ceiling[k], z);
+                  }
+              }
+        }
+      return { floor, ceiling };
+    }
+  } // namespace
+
+
   double cavity_within(const scene::Scene &scene,
                        const State        &state,
                        const double        radius,
                        const double        time)
   {
-    constexpr unsigned int n    = 4000;
-    constexpr double       none = std::numeric_limits<double>::infinity();
-    double                 low = none, high = -none; // of the symmetry line
-    for (const BoundaryNode &node : state.tables.boundary_nodes)
-      if (node.on_symmetry && std::abs(node.symmetry_normal[1]) > 0.99)
-        {
-          low  = std::min(low, state.node_position(node.node)[1]);
-          high = std::max(high, state.node_position(node.node)[1]);
-        }
-    low  = MPI::min(low, state.communicator);
-    high = MPI::max(high, state.communicator);
-
-    double lowest = none, highest = -none;
-    for (const BoundaryNode &node : state.tables.boundary_nodes)
-      {
-        lowest  = std::min(lowest, state.node_position(node.node)[1]);
-        highest = std::max(highest, state.node_position(node.node)[1]);
-      }
-    const double middle =
-        0.5 * (MPI::min(lowest, state.communicator) + MPI::max(highest, state.communicator));
-    const bool has_symmetry = low <= high, below = has_symmetry && low < middle;
-
-    std::vector<double> floor(n, has_symmetry && below ? low : -none),
-        ceiling(n, has_symmetry && !below ? high : none);
-    const double width = radius / n;
-    for (const scene::Tool &tool : scene.tools)
-      {
-        const Vector2 shift = tool.motion.displacement(time);
-        for (const std::vector<Point> &line : tool.profile.sample(1e-5 * scene.size))
-          for (unsigned int i = 0; i + 1 < line.size(); ++i)
-            {
-              const Point a = line[i] + shift, b = line[i + 1] + shift;
-              // The workpiece's side is on the left: what runs outwards looks up.
-              const bool         looks_up = b[0] > a[0];
-              const double       from = std::min(a[0], b[0]), to = std::max(a[0], b[0]);
-              const unsigned int first = static_cast<unsigned int>(
-                  std::clamp(std::ceil(from / width - 0.5), 0., static_cast<double>(n)));
-              for (unsigned int k = first; k < n && (k + 0.5) * width <= to; ++k)
-                {
-                  const double z =
-                      a[1] + ((k + 0.5) * width - a[0]) / (b[0] - a[0]) * (b[1] - a[1]);
-                  if (looks_up)
-                    floor[k] = std::max(floor[k], z);
-                  else
-                    ceiling[k] = std::min(ceiling[k], z);
-                }
-            }
-      }
-    double volume = 0;
+    const Columns columns = columns_within(scene, state, radius, time);
+    const double  width   = radius / n;
+    double        volume  = 0;
     for (unsigned int k = 0; k < n; ++k)
-      if (const double height = ceiling[k] - floor[k]; height > 0 && std::isfinite(height))
+      if (const double height = columns.ceiling[k] - columns.floor[k];
+          height > 0 && std::isfinite(height))
         volume += 2 * M_PI * (k + 0.5) * width * width * height;
     return volume;
+  }
+
+
+  Opening opening_within(const scene::Scene &scene,
+                         const State        &state,
+                         const double        radius,
+                         const double        time)
+  {
+    const Columns columns = columns_within(scene, state, radius, time);
+    const double  width   = radius / n;
+    Opening       open;
+    unsigned int  count = 0;
+    for (unsigned int k = 0; k < n; ++k)
+      if (!std::isfinite(columns.ceiling[k] - columns.floor[k]))
+        {
+          if (count++ == 0)
+            open.from = k * width;
+          open.to = (k + 1) * width;
+        }
+    // A column or two at the end of a profile are rounding.
+    return count > n / 500 ? open : Opening();
   }
 
 

@@ -7,6 +7,7 @@
 #include <axiforge/base/atomic_file.h>
 #include <axiforge/base/collective.h>
 #include <axiforge/base/errors.h>
+#include <axiforge/base/wording.h>
 #include <axiforge/meshing/initial_state.h>
 #include <axiforge/output/results.h>
 #include <axiforge/study/report.h>
@@ -44,9 +45,23 @@ namespace axiforge::study
       meshing::WorkpieceMesh       mesh =
           meshing::read_workpiece(parameters.workpiece, "Workpiece", parameters.directory);
       meshing::share_from_first_rank(mesh, communicator);
-      const scene::Scene scene(parameters, meshing::outline_of(mesh));
+      State state(communicator);
+      meshing::make_initial_state(mesh, parameters.workpiece.refinement_levels, state);
+      const process::Start start = process::start_operation(parameters, &mesh, state);
+      const scene::Scene  &scene = *start.scene;
       return { output::history_columns(scene), scene.driving_tool != no_tool,
                scene.characteristic_rate };
+    }
+
+
+    /// Whether a value is a list of numbers where one number was meant; empty: it is not.
+    std::string advice_on_values(const Plan &plan)
+    {
+      for (const Variation &variation : plan.variations)
+        if (const std::size_t comma = variation.label.find(','); comma != std::string::npos)
+          return "\"Study/Values\": the values of a study are separated by \";\", and \"" +
+                 variation.label + "\" is a single one.";
+      return "";
     }
 
 
@@ -67,7 +82,8 @@ namespace axiforge::study
               reason = error.what();
           }
       throw InputError::entry("Study/Entry", plan.entry,
-                              "none of the values can be set (" + reason + ")");
+                              "none of the values can be set (" + reason + ")", "",
+                              advice_on_values(plan));
     }
 
 
@@ -88,7 +104,8 @@ namespace axiforge::study
             if (reason.empty())
               reason = error.what();
           }
-      throw InputError(reason);
+      const std::string advice = advice_on_values(plan);
+      throw InputError(advice.empty() ? reason : reason + " " + advice);
     }
 
 
@@ -129,6 +146,7 @@ namespace axiforge::study
                   { "Time stepping/Scheme = explicit euler", "Time stepping/Stroke per step = 0",
                     "Time stepping/Time step = " + csv_number(single_step_reduction / rate),
                     "Time stepping/Most steps = 1" });
+              own.stop_after = 1;
             }
           process::run(own, communicator);
         }
@@ -144,6 +162,41 @@ namespace axiforge::study
       run.wall = timer.wall_time();
       run.cpu  = timer.cpu_time();
       return run;
+    }
+
+
+    /// Reads and checks the scene of every value; runs nothing.
+    void validate_variations(const process::RunOptions &options,
+                             const Plan                &plan,
+                             const MPI_Comm             communicator,
+                             const bool                 quiet)
+    {
+      unsigned int number = 0, n_faulty = 0;
+      std::string  first_fault;
+      for (const Variation &variation : plan.variations)
+        {
+          process::RunOptions own = options;
+          own.overrides           = joined(options.overrides, variation.overrides);
+          own.quiet               = true;
+          std::string said        = "sound";
+          try
+            {
+              process::run(own, communicator);
+            }
+          catch (const InputError &error)
+            {
+              said = error.what();
+              if (n_faulty++ == 0)
+                first_fault = said;
+            }
+          if (!quiet)
+            std::cout << fmt::format("run {} of {}: {} = {}: {}\n", ++number,
+                                     plan.variations.size(), plan.entry, variation.label, said)
+                      << std::flush;
+        }
+      if (n_faulty > 0)
+        throw InputError(fmt::format("{} of {} of the study can't be run. The first: {}", n_faulty,
+                                     counted(plan.variations.size(), "run"), first_fault));
     }
 
 
@@ -182,6 +235,12 @@ namespace axiforge::study
     if (study.plan.at == Place::strokes && !facts.has_stroke)
       throw InputError::entry("Study/At", parameters.study.at,
                               "no tool of the scene moves, so there is no stroke", "end, all");
+
+    if (options.validate)
+      {
+        validate_variations(options, study.plan, communicator, quiet);
+        return study;
+      }
 
     std::string folder =
         options.output_directory.empty() ? parameters.output.directory : options.output_directory;

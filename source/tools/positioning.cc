@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -11,6 +12,12 @@ namespace axiforge::tools
 {
   namespace
   {
+    Vector2 left_of(const Vector2 &t)
+    {
+      return Vector2({ -t[1], t[0] });
+    }
+
+
     /// A surface that moves along itself, or away, does not come closer: it may touch and slide.
     constexpr double sliding = 0.02;
 
@@ -41,9 +48,9 @@ namespace axiforge::tools
           for (unsigned int i = 0; i < n; ++i)
             {
               const bool closes = found[i].normal * direction >= sliding;
-              result.safe_way   = std::min(
-                    result.safe_way,
-                    closes ? found[i].gap : std::max(found[i].gap, sliding_step * size));
+              result.safe_way =
+                  std::min(result.safe_way,
+                           closes ? found[i].gap : std::max(found[i].gap, sliding_step * size));
               result.deepest = std::min(result.deepest, found[i].gap);
             }
         }
@@ -127,5 +134,42 @@ namespace axiforge::tools
                       name, direction[0], direction[1]));
     profile.move(forward * direction);
     return (forward - back) * direction;
+  }
+
+
+  std::optional<Point> self_crossing(const Profile &profile)
+  {
+    const double chord = 1e-4 * profile.bounding_box().size(),
+                 least = 1e-6 * profile.bounding_box().size();
+    for (const std::vector<Point> &line : profile.sample(chord))
+      {
+        // By their left ends, so that only pieces that overlap in r are compared.
+        std::vector<unsigned int> order(line.size() - 1);
+        std::iota(order.begin(), order.end(), 0u);
+        const auto leftmost = [&](const unsigned int i) {
+          return std::min(line[i][0], line[i + 1][0]);
+        };
+        std::sort(order.begin(), order.end(), [&](const unsigned int i, const unsigned int j) {
+          return leftmost(i) < leftmost(j);
+        });
+        for (std::size_t i = 0; i < order.size(); ++i)
+          {
+            const Point a = line[order[i]], b = line[order[i] + 1];
+            for (std::size_t j = i + 1;
+                 j < order.size() && leftmost(order[j]) <= std::max(a[0], b[0]); ++j)
+              {
+                const Point c = line[order[j]], d = line[order[j] + 1];
+                // Signed distances of the ends of each from the line of the other: both change
+                // sides.
+                const Vector2 along = (b - a) / a.distance(b), other = (d - c) / c.distance(d);
+                const double  c_off = left_of(along) * (c - a), d_off = left_of(along) * (d - a);
+                const double  a_off = left_of(other) * (a - c), b_off = left_of(other) * (b - c);
+                if (std::min(c_off, d_off) < -least && std::max(c_off, d_off) > least &&
+                    std::min(a_off, b_off) < -least && std::max(a_off, b_off) > least)
+                  return Point(c + c_off / (c_off - d_off) * (d - c));
+              }
+          }
+      }
+    return {};
   }
 } // namespace axiforge::tools

@@ -14,6 +14,9 @@ namespace axiforge
    */
   std::string closest_name(const std::string &wanted, const std::vector<std::string> &known);
 
+  /// `1 tool`, `2 tools`.
+  std::string counted(std::size_t number, const std::string &noun);
+
   /// `"a", "b" or "c"`; empty for no names.
   std::string list_in_words(const std::vector<std::string> &names);
 

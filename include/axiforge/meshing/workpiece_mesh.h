@@ -48,6 +48,9 @@ namespace axiforge::meshing
     /// and the other physical curves on the boundary.
     std::map<std::string, dealii::types::boundary_id> boundary_ids;
 
+    /// What was put right on the way, one line each.
+    std::vector<std::string> notes;
+
     /// Volume of the body of revolution [mm^3], exact for the Q2 geometry (5 x 5 Gauss points).
     double volume() const;
   };

@@ -18,6 +18,7 @@ namespace axiforge::process
    * The loop over the steps of one operation, from the present state to the end of the operation.
    * When it cannot go on, what there is is written, with a checkpoint. Collective.
    * @param record of the last step, if it goes on from a checkpoint
+   * @param stop_after so many steps it is over without having come to its end; 0: it goes on
    * @param chain its member `present` grows with the steps
    * @throws ComputationError
    */
@@ -28,5 +29,6 @@ namespace axiforge::process
                      StepRecord          record,
                      ChainProgress      &chain,
                      bool                quiet,
-                     const OnStep       &on_step);
+                     const OnStep       &on_step,
+                     unsigned int        stop_after = 0);
 } // namespace axiforge::process

@@ -18,6 +18,19 @@ namespace axiforge
    */
   double cavity_within(const scene::Scene &scene, const State &state, double radius, double time);
 
+  /// Radii between which the cavity has no floor or no ceiling: a bore, or a profile that ends.
+  struct Opening
+  {
+    double from = 0, to = 0; ///< [mm]
+    bool   any() const
+    {
+      return to > from;
+    }
+  };
+
+  /// Where the cavity within a radius is open. Collective.
+  Opening opening_within(const scene::Scene &scene, const State &state, double radius, double time);
+
   /// The share of the cavity that is filled, doc/theory.md (30): volume_within() over
   /// cavity_within(); 0 without a cavity. Collective.
   double fill_fraction(const scene::Scene &scene, const State &state, double radius, double time);

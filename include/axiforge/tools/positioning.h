@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <axiforge/tools/profile.h>
@@ -21,8 +22,8 @@ namespace axiforge::tools
   /**
    * How far [mm] an oriented profile, clear of all points, can travel along a unit direction until
    * it touches the first of them: to within @p tolerance [mm] short of it, and beyond only where a
-   * wall along the way bends into it, see sunk_tolerance. Surfaces that touch and move away or along
-   * themselves do not count.
+   * wall along the way bends into it, see sunk_tolerance. Surfaces that touch and move away or
+   * along themselves do not count.
    * @return infinity if it passes all of them
    *
    * Conservative advancement (B. Mirtich, 1996): the smallest gap is a way that is safe whatever
@@ -44,4 +45,7 @@ namespace axiforge::tools
                            const Vector2            &direction,
                            double                    tolerance,
                            const std::string        &name);
+
+  /// A place where a chain of the profile crosses itself [mm]; nothing if none does.
+  std::optional<Point> self_crossing(const Profile &profile);
 } // namespace axiforge::tools

@@ -124,7 +124,7 @@ same smm asked
 
 # A run that can't go on keeps its last good state; with what it lacked it goes on from there.
 name=iterations_run_out
-run out 0 "${scene[@]}" --set "Time stepping/Most steps = 10" --set "Checkpoint/Every steps = 100"
+run out 2 "${scene[@]}" --set "Time stepping/Most steps = 10" --set "Checkpoint/Every steps = 100"
 run out 2 "${scene[@]}" --set "Flow solver/Most iterations = 1" --resume
 grep -qF 'The state after step 10 is kept' out/stderr || fail "$(cat out/stderr)"
 resume out 0 "${scene[@]}"
@@ -138,7 +138,7 @@ compare smm/output/history.csv further/output/history.csv -v rel=1e-7 -v only="$
 
 name=two_ranks
 ranks=2 run two 0 "${scene[@]}"
-ranks=2 run two_short 0 "${scene[@]}" --set "Time stepping/Most steps = 20" \
+ranks=2 run two_short 2 "${scene[@]}" --set "Time stepping/Most steps = 20" \
   --set "Checkpoint/Every steps = 12"
 cp -r two_short two_on_one
 ranks=2 resume two_short 0 "${scene[@]}"

@@ -112,10 +112,27 @@ fault no_section 'Entry "Study/Entry" = "": the scene has no study'
 fault no_values 'Entry "Study/Values" = "": there are no values' --set "Study/Entry = refinement"
 fault unknown_entry 'Did you mean "Factor"?' --set "Study/Entry = Tool upper/Friction/Factr" \
   --set "Study/Values = 0.1; 0.2"
+fault comma_for_semicolon 'separated by ";"' --set "Study/Entry = Time stepping/Largest reduction per step" \
+  --set "Study/Values = 0.1, 0.2"
+fault comma_in_geometry 'separated by ";"' --set "Study/Entry = Workpiece/Geometry parameters/Radius" \
+  --set "Study/Values = 20, 22"
+fault validated '1 of 2 runs' --validate --set "Study/Entry = Tool upper/Friction/Factor" \
+  --set "Study/Values = 0.5; 2"
 fault unknown_column '"largest_radius_mm"' "${values[@]}" --set "Study/Quantities = force_lower_N"
 fault unit_forgotten 'Did you mean "force_upper_N"?' "${values[@]}" --set "Study/Quantities = force_upper"
 fault too_many_references '2 references for 1 quantities' "${values[@]}" \
   --set "Study/Quantities = force_upper_N" --set "Study/Reference = 1, 2"
+
+name=validate
+run validate 0 study cylinder_upsetting.prm "${coarse[@]}" "${values[@]}" --validate
+[ "$(grep -c 'sound$' validate/stdout)" -eq 2 ] || fail "not both values are called sound: $(cat validate/stdout)"
+no_files validate
+
+# A billet drawn elsewhere is put in its place before tools and workpiece are compared.
+name=placed
+run placed 0 study punch_indentation.prm --validate --set "Placement/Rest on = lower" \
+  --set "Tool lower/Geometry parameters = Z = 5" --set "Tool punch/Start = touching" \
+  --set "Study/Entry = Tool punch/Motion/Velocity" --set "Study/Values = 0, -1; 0, -2"
 
 name=no_scene
 run no_scene 1 study
