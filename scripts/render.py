@@ -169,7 +169,7 @@ def read_history(folder):
 def draw_forces(axes, folder):
     rows, tools = read_history(folder)
     if tools:
-        stroke = [float(r["stroke_mm"]) for r in rows]
+        stroke = [float(r["stroke_middle_mm"]) for r in rows]  # where the forces hold
         for tool in tools:
             axes.plot(stroke, [float(r[f"force_{tool}_N"]) / 1e3 for r in rows], label=tool)
         axes.set_xlabel("stroke [mm]")
@@ -177,7 +177,7 @@ def draw_forces(axes, folder):
     else:
         for name in rows[0]:
             if name.startswith("pressure_"):
-                time = [float(r["time_s"]) - 0.5 * float(r["time_step_s"]) for r in rows]
+                time = [float(r["time_middle_s"]) for r in rows]
                 axes.plot(time, [float(r[name]) for r in rows], label=name[9:-4])
         axes.set_xlabel("time [s]")
         axes.set_ylabel("pressure [MPa]")

@@ -33,7 +33,7 @@ namespace
 
   std::vector<double> read(const FlowProblem &problem)
   {
-    return read_gauges(problem.scene.gauges, problem.state);
+    return read_gauges(problem.scene, problem.state);
   }
 } // namespace
 

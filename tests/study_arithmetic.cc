@@ -33,11 +33,12 @@ namespace
                   const std::function<double(double stroke)> &radius)
   {
     History result;
-    result.columns = { "stroke_mm", "time_s", "force_upper_N", "largest_radius_mm" };
+    result.columns = { "stroke_mm",     "time_s",        "stroke_middle_mm",
+                       "time_middle_s", "force_upper_N", "largest_radius_mm" };
     for (unsigned int step = 1; step <= n; ++step)
       {
         const double end = 10. * step / n, middle = 10. * (step - 0.5) / n;
-        result.rows.push_back({ end, end / 2, force(middle), radius(end) });
+        result.rows.push_back({ end, end / 2, middle, middle / 2, force(middle), radius(end) });
       }
     return result;
   }

@@ -13,12 +13,15 @@ namespace axiforge::output
       Columns list = { { "step", r.step },
                        { "time_s", r.time },
                        { "stroke_mm", r.stroke },
-                       { "time_step_s", r.time_step } };
+                       { "time_step_s", r.time_step },
+                       { "time_middle_s", r.time_middle },
+                       { "stroke_middle_mm", r.stroke_middle } };
       for (unsigned int i = 0; i < scene.tools.size(); ++i)
         {
           const std::string &name = scene.tools[i].name;
           const ToolRecord   tool = i < r.tools.size() ? r.tools[i] : ToolRecord();
           list.insert(list.end(), { { "force_" + name + "_N", tool.force },
+                                    { "end_force_" + name + "_N", tool.end_force },
                                     { "radial_force_" + name + "_N", tool.radial_force },
                                     { "contact_radius_" + name + "_mm", tool.contact_radius },
                                     { "neutral_radius_" + name + "_mm", tool.neutral_radius } });

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <algorithm>
 #include <memory>
 
 #include <axiforge/base/errors.h>
@@ -140,8 +141,11 @@ namespace axiforge::process
       summary.height = record.height;
       summary.fill   = record.fill;
       if (scene.driving_tool != no_tool)
-        summary.force = record.tools[scene.driving_tool].force;
-      summary.largest_force = std::max(summary.largest_force, summary.force);
+        {
+          summary.force         = record.end_force;
+          summary.largest_force = std::max(
+              { summary.largest_force, record.end_force, record.tools[scene.driving_tool].force });
+        }
       summary.work += record.time_step * (record.power_tools + record.power_boundaries);
       summary.imbalance      = std::max(summary.imbalance, imbalance(scene, state, record));
       summary.volume_change  = record.relative_volume_change;

@@ -53,11 +53,10 @@ namespace axiforge::process
       return;
     std::string forces;
     for (unsigned int i = 0; i < record.tools.size(); ++i)
-      forces += fmt::format("  {} {:.6g} N", scene.tools[i].name, record.tools[i].force);
+      forces += fmt::format("  {} {:.6g} N", scene.tools[i].name, record.tools[i].end_force);
     for (unsigned int i = 0; i < record.boundaries.size(); ++i)
-      if (scene.boundaries[i].is_velocity)
-        forces +=
-            fmt::format("  {} {:.6g} MPa", scene.boundaries[i].name, record.boundaries[i].pressure);
+      forces +=
+          fmt::format("  {} {:.6g} MPa", scene.boundaries[i].name, record.boundaries[i].pressure);
     const double left =
         timer.wall_time() / (record.time - start_time) * (scene.end_time() - record.time);
     std::cout << fmt::format(

@@ -95,20 +95,47 @@ namespace axiforge::process
     }
 
 
-    /// Force of the driving tool [N] at the end of a step, by the line through the middles of this
-    /// step and the one before.
-    double force_at_end(const scene::Scene &scene,
-                        const StepRecord   &record,
-                        const double        time_step,
-                        const StepRecord   &last)
+    /// Share of a step at whose end its forces and powers hold.
+    double share_of_forces(const scene::Scene &scene)
     {
-      if (scene.driving_tool == no_tool)
-        return 0;
-      const double force = record.tools[scene.driving_tool].force;
-      if (last.step == 0)
-        return force;
-      return force + (force - last.tools[scene.driving_tool].force) * time_step /
-                         (time_step + last.time_step);
+      return scene.time.scheme() == scene::TimeScheme::midpoint ? 0.5 : 0.;
+    }
+
+
+    /**
+     * Forces of the tools at the end of a step [N], by the line through where they hold in this
+     * step and the one before: an error of second order. At most twice the slope before that
+     * counts, and none of the other sign, so that a saw-tooth or a jump (nodes that are caught, a
+     * new mesh, a kink of the motion) is not carried on. The first step knows no slope.
+     */
+    void set_end_forces(const scene::Scene &scene,
+                        const double        time_step,
+                        const StepRecord   &last,
+                        StepRecord         &record)
+    {
+      const double left  = 1 - share_of_forces(scene),
+                   apart = left * last.time_step + (1 - left) * time_step;
+      for (unsigned int i = 0; i < record.tools.size(); ++i)
+        {
+          ToolRecord &tool  = record.tools[i];
+          double      slope = 0;
+          if (last.step > 0)
+            {
+              const ToolRecord &before = last.tools[i];
+              slope = tool.force_slope = (tool.force - before.force) / apart;
+              if (last.step > 1)
+                slope =
+                    slope * before.force_slope > 0
+                        ? std::copysign(std::min(std::abs(slope), 2 * std::abs(before.force_slope)),
+                                        slope)
+                        : 0;
+            }
+          tool.end_force = tool.force + slope * left * time_step;
+          if (tool.end_force * tool.force <= 0)
+            tool.end_force = tool.force; // a tool that has let go, or hardly touches
+        }
+      if (scene.driving_tool != no_tool)
+        record.end_force = record.tools[scene.driving_tool].end_force;
     }
 
 
@@ -244,7 +271,7 @@ namespace axiforge::process
                 record.step       = state.step + 1;
                 record.height     = size.highest - size.lowest;
                 record.fill       = fill;
-                record.end_force  = force_at_end(scene, record, time_step, last);
+                set_end_forces(scene, time_step, last, record);
                 if (const double passed = passed_end(scene, record);
                     passed > end_tolerance && cuts++ < most_cuts)
                   {
@@ -253,6 +280,11 @@ namespace axiforge::process
                     time_step *= std::clamp(-before_it / (passed - before_it), 0.05, 0.95);
                     continue;
                   }
+                // The tools go straight from start to end of a step.
+                const double share   = share_of_forces(scene);
+                record.time_middle   = state.time + share * time_step;
+                record.stroke_middle = (1 - share) * scene.stroke(state.time) +
+                                       share * scene.stroke(state.time + time_step);
                 accept(state, result, time_step);
                 record.time                     = state.time;
                 record.time_step                = time_step;
@@ -263,7 +295,7 @@ namespace axiforge::process
                 record.smallest_jacobian        = size.smallest_jacobian;
                 record.smallest_vertex_jacobian = size.smallest_vertex_jacobian;
                 record.largest_strain           = largest_strain(state);
-                record.gauges                   = read_gauges(scene.gauges, state);
+                record.gauges                   = read_gauges(scene, state);
                 record.cells                    = state.tables.n_global_cells;
                 record.unknowns                 = state.n_unknowns();
                 record.repeats                  = repeats;

@@ -4,6 +4,7 @@
 #include <axiforge/base/features.h>
 #include <axiforge/base/phases.h>
 #include <axiforge/laws/deviatoric.h>
+#include <axiforge/solvers/edge_points.h>
 #include <axiforge/solvers/flow_solver.h>
 
 namespace axiforge::solvers
@@ -288,38 +289,20 @@ namespace axiforge::solvers
 
   void FlowSolver::add_boundary_pressure()
   {
-    // The pressure follows the edge in the present configuration; three Gauss points each.
-    const double gauss[3]  = { -std::sqrt(0.6), 0, std::sqrt(0.6) };
-    const double weight[3] = { 5. / 9, 8. / 9, 5. / 9 };
-    const double time      = state.time + theta * time_step;
+    // The pressure follows the edge in the present configuration.
+    const double time = state.time + theta * time_step;
     for (const BoundaryEdge &edge : state.tables.edges)
       {
         const unsigned int condition = edge.owned ? contact->condition_of(edge.id) : no_tool;
         if (condition == no_tool || scene.boundaries[condition].is_velocity)
           continue;
-        for (unsigned int q = 0; q < 3; ++q)
+        const auto &local = InterfaceFriction::side_nodes[edge.side];
+        for (const EdgePoint &point : edge_points(position, edge))
           {
-            const double s     = gauss[q];
-            const double N[3]  = { 0.5 * s * (s - 1), 0.5 * s * (s + 1), 1 - s * s };
-            const double dN[3] = { s - 0.5, s + 0.5, -2 * s };
-            Point        x;
-            Vector2      along;
+            const Vector2 load = -scene.boundaries[condition].pressure(point.x, time) * point.area;
             for (unsigned int a = 0; a < 3; ++a)
               for (unsigned int c = 0; c < 2; ++c)
-                {
-                  const double coordinate = position.local_element(2 * edge.nodes[a] + c);
-                  x[c] += N[a] * coordinate;
-                  along[c] += dN[a] * coordinate;
-                }
-            // To the right of the sides right (+z) and bottom (+r) is outside.
-            const double  sign = edge.side == 1 || edge.side == 2 ? 1 : -1;
-            const Vector2 outward({ sign * along[1], -sign * along[0] });
-            const double  load =
-                -weight[q] * 2 * M_PI * x[0] * scene.boundaries[condition].pressure(x, time);
-            const auto &local = InterfaceFriction::side_nodes[edge.side];
-            for (unsigned int a = 0; a < 3; ++a)
-              for (unsigned int c = 0; c < 2; ++c)
-                cell_external[edge.cell][2 * local[a] + c] += load * N[a] * outward[c];
+                cell_external[edge.cell][2 * local[a] + c] += point.shape[a] * load[c];
           }
       }
   }

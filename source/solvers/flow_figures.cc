@@ -4,7 +4,10 @@
 #include <axiforge/base/collective.h>
 #include <axiforge/base/features.h>
 #include <axiforge/base/phases.h>
+#include <axiforge/solvers/contact_pressure.h>
+#include <axiforge/solvers/edge_points.h>
 #include <axiforge/solvers/flow_solver.h>
+#include <axiforge/state/contact_ends.h>
 
 namespace axiforge::solvers
 {
@@ -72,6 +75,8 @@ namespace axiforge::solvers
     if (scene.flow.estimate_condition)
       record.condition = system->condition();
 
+    if (!scene.tools.empty())
+      recover_contact_pressures(state, position, contact->nodes);
     result.contacts = contact->nodes;
     result.cell_history.resize(state.tables.cells.size());
     CellGeometry geometry;
@@ -228,6 +233,7 @@ namespace axiforge::solvers
           force[touch.tool[0]] += (node_value(balance(), node.node) * t) * t;
         slip[touch.tool[0]].push_back({ { position.local_element(2 * node.node), touch.slip } });
       }
+    add_contact_ends(radius, slip);
     for (unsigned int e = 0; e < friction->edges().size(); ++e)
       {
         const InterfaceFriction::Edge &edge = friction->edges()[e];
@@ -270,59 +276,98 @@ namespace axiforge::solvers
   }
 
 
+  void FlowSolver::add_contact_ends(std::vector<double>                             &radius,
+                                    std::vector<std::vector<std::array<double, 2>>> &slip) const
+  {
+    const auto at_end = [&](const unsigned int node) {
+      return Point(state.node_position(node) + time_step * node_value(velocity, node));
+    };
+    for (const ContactEnd &end :
+         contact_ends(scene, state, contact->nodes, state.time + time_step, at_end))
+      {
+        const BoundaryEdge &edge = state.tables.edges[end.edge];
+        const unsigned int  last = edge.nodes[end.last], next = edge.nodes[end.next];
+        radius[end.tool]         = std::max(radius[end.tool], (1 - end.share) * at_end(last)[0] +
+                                                                  end.share * at_end(next)[0]);
+        const NodeContact &touch = contact->nodes[edge.boundary_nodes[end.last]];
+        if (end.share == 0 || touch.tool[0] != end.tool ||
+            scene.tools[end.tool].friction.kind() == laws::FrictionKind::sticking)
+          continue;
+        const auto between = [&](const double a, const double b) {
+          return (1 - end.share) * a + end.share * b;
+        };
+        const Vector2 v = node_value(velocity, next) - contact->tool_velocity(end.tool);
+        slip[end.tool].push_back(
+            { { between(position.local_element(2 * last), position.local_element(2 * next)),
+                between(touch.slip, v * ContactSet::tangent(touch.normal[0])) } });
+      }
+  }
+
+
   void FlowSolver::record_boundaries(StepRecord &record)
   {
     record.boundaries.resize(scene.boundaries.size());
     for (unsigned int i = 0; i < scene.boundaries.size(); ++i)
       {
-        // Pressure boundaries are loads; they stand in the external forces.
-        const bool prescribed = scene.boundaries[i].is_velocity;
-        double     power = 0, force = 0, flux = 0;
-        if (prescribed)
-          for (const BoundaryNode &node : state.tables.boundary_nodes)
-            for (unsigned int c = 0; c < 2 && node.owned; ++c)
-              {
-                // Where two parts meet, the first that prescribes a component supplies its force.
-                unsigned int owner = no_tool;
-                for (const dealii::types::boundary_id id : node.prescribed)
-                  if (const unsigned int condition = contact->condition_of(id);
-                      owner == no_tool && condition != no_tool &&
-                      scene.boundaries[condition].velocity[c])
-                    owner = condition;
-                if (owner != i)
-                  continue;
-                const double f = node_value(internal, node.node)[c];
-                power += f * node_value(velocity, node.node)[c];
-                force += c == 1 ? f : 0;
-              }
-        for (const BoundaryEdge &edge : state.tables.edges)
-          {
-            if (!edge.owned || contact->condition_of(edge.id) != i)
-              continue;
-            const double gauss[3]  = { -std::sqrt(0.6), 0, std::sqrt(0.6) },
-                         weight[3] = { 5. / 9, 8. / 9, 5. / 9 };
-            for (unsigned int q = 0; q < 3; ++q)
-              {
-                const double s     = gauss[q];
-                const double N[3]  = { 0.5 * s * (s - 1), 0.5 * s * (s + 1), 1 - s * s };
-                const double dN[3] = { s - 0.5, s + 0.5, -2 * s };
-                Vector2      x, along, v;
-                for (unsigned int a = 0; a < 3; ++a)
-                  {
-                    x += N[a] * node_value(position, edge.nodes[a]);
-                    v += N[a] * node_value(velocity, edge.nodes[a]);
-                    along += dN[a] * node_value(position, edge.nodes[a]);
-                  }
-                const double sign = edge.side == 1 || edge.side == 2 ? 1 : -1;
-                flux -= weight[q] * 2 * M_PI * x[0] * sign * (along[1] * v[0] - along[0] * v[1]);
-              }
-          }
-        BoundaryRecord &entry = record.boundaries[i];
-        entry.power           = MPI::sum(power, state.communicator);
-        entry.force           = MPI::sum(force, state.communicator);
-        flux                  = MPI::sum(flux, state.communicator);
-        entry.pressure        = prescribed && flux != 0 ? entry.power / flux : 0;
-        record.power_boundaries += entry.power;
+        const BoundarySums sums =
+            scene.boundaries[i].is_velocity ? sums_of_velocity(i) : sums_of_pressure(i);
+        const double    extent = MPI::sum(sums.extent, state.communicator);
+        const double    load   = MPI::sum(sums.load, state.communicator);
+        BoundaryRecord &entry  = record.boundaries[i];
+        entry.power            = MPI::sum(sums.power, state.communicator);
+        entry.force            = MPI::sum(sums.force, state.communicator);
+        entry.pressure         = extent != 0 ? load / extent : 0;
+        // The power of pressures is among that of the external forces, see record_powers().
+        if (scene.boundaries[i].is_velocity)
+          record.power_boundaries += entry.power;
       }
+  }
+
+
+  FlowSolver::BoundarySums FlowSolver::sums_of_velocity(const unsigned int condition) const
+  {
+    BoundarySums sums;
+    for (const BoundaryNode &node : state.tables.boundary_nodes)
+      for (unsigned int c = 0; c < 2 && node.owned; ++c)
+        {
+          // Where two parts meet, the first that prescribes a component supplies its force.
+          unsigned int owner = no_tool;
+          for (const dealii::types::boundary_id id : node.prescribed)
+            if (const unsigned int other = contact->condition_of(id);
+                owner == no_tool && other != no_tool && scene.boundaries[other].velocity[c])
+              owner = other;
+          if (owner != condition)
+            continue;
+          const double f = node_value(internal, node.node)[c];
+          sums.power += f * node_value(velocity, node.node)[c];
+          sums.force += c == 1 ? f : 0;
+        }
+    // The mean pressure is the power over the volume that is swept, inwards, per time.
+    sums.load = sums.power;
+    for (const BoundaryEdge &edge : state.tables.edges)
+      if (edge.owned && contact->condition_of(edge.id) == condition)
+        for (const EdgePoint &point : edge_points(position, edge))
+          sums.extent -= point.area * point.value(velocity, edge);
+    return sums;
+  }
+
+
+  FlowSolver::BoundarySums FlowSolver::sums_of_pressure(const unsigned int condition) const
+  {
+    // A load at rest sweeps no volume: its mean is that over the area.
+    BoundarySums sums;
+    const double time = state.time + theta * time_step;
+    for (const BoundaryEdge &edge : state.tables.edges)
+      if (edge.owned && contact->condition_of(edge.id) == condition)
+        for (const EdgePoint &point : edge_points(position, edge))
+          {
+            const double  p        = scene.boundaries[condition].pressure(point.x, time);
+            const Vector2 traction = -p * point.area;
+            sums.power += traction * point.value(velocity, edge);
+            sums.force += traction[1];
+            sums.load += p * point.area.norm();
+            sums.extent += point.area.norm();
+          }
+    return sums;
   }
 } // namespace axiforge::solvers

@@ -12,7 +12,7 @@ namespace axiforge
   namespace
   {
     /// To be raised with every change of what a file holds.
-    constexpr std::uint32_t format_version = 3;
+    constexpr std::uint32_t format_version = 4;
     const std::string       magic          = "AXIFORGE CHECKPOINT\n";
     constexpr std::uint32_t byte_order     = 0x01020304;
   } // namespace
@@ -20,8 +20,8 @@ namespace axiforge
 
   template <typename Archive> void visit(Archive &archive, ToolRecord &object)
   {
-    auto &[force, radial_force, contact_radius, neutral_radius] = object;
-    archive(force, radial_force, contact_radius, neutral_radius);
+    auto &[force, radial_force, contact_radius, neutral_radius, end_force, force_slope] = object;
+    archive(force, radial_force, contact_radius, neutral_radius, end_force, force_slope);
   }
 
   template <typename Archive> void visit(Archive &archive, BoundaryRecord &object)
@@ -51,19 +51,20 @@ namespace axiforge
 
   template <typename Archive> void visit(Archive &archive, StepRecord &object)
   {
-    auto &[step, time, time_step, stroke, tools, boundaries, gauges, volume, relative_volume_change,
-           power_tools, power_boundaries, power_plastic, power_friction, power_contact,
-           power_volume, power_residual, largest_strain, largest_strain_rate, smallest_jacobian,
-           smallest_vertex_jacobian, largest_radius, height, fill, end_force, cells, unknowns,
-           iterations, set_changes, repeats, residual, divergence, condition, times, remeshings,
-           remeshing_volume_jump, remeshing_strain_jump, errors] = object;
+    auto &[step, time, time_step, stroke, time_middle, stroke_middle, tools, boundaries, gauges,
+           volume, relative_volume_change, power_tools, power_boundaries, power_plastic,
+           power_friction, power_contact, power_volume, power_residual, largest_strain,
+           largest_strain_rate, smallest_jacobian, smallest_vertex_jacobian, largest_radius, height,
+           fill, end_force, cells, unknowns, iterations, set_changes, repeats, residual, divergence,
+           condition, times, remeshings, remeshing_volume_jump, remeshing_strain_jump, errors] =
+        object;
     // All but the condition, which nothing that follows depends on.
-    archive(step, time, time_step, stroke, tools, boundaries, gauges, volume,
-            relative_volume_change, power_tools, power_boundaries, power_plastic, power_friction,
-            power_contact, power_volume, power_residual, largest_strain, largest_strain_rate,
-            smallest_jacobian, smallest_vertex_jacobian, largest_radius, height, fill, end_force,
-            cells, unknowns, iterations, set_changes, repeats, residual, divergence, times,
-            remeshings, remeshing_volume_jump, remeshing_strain_jump, errors);
+    archive(step, time, time_step, stroke, time_middle, stroke_middle, tools, boundaries, gauges,
+            volume, relative_volume_change, power_tools, power_boundaries, power_plastic,
+            power_friction, power_contact, power_volume, power_residual, largest_strain,
+            largest_strain_rate, smallest_jacobian, smallest_vertex_jacobian, largest_radius,
+            height, fill, end_force, cells, unknowns, iterations, set_changes, repeats, residual,
+            divergence, times, remeshings, remeshing_volume_jump, remeshing_strain_jump, errors);
   }
 
   template <typename Archive> void visit(Archive &archive, ResultsProgress &object)

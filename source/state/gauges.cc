@@ -7,6 +7,7 @@
 
 #include <axiforge/base/features.h>
 #include <axiforge/base/phases.h>
+#include <axiforge/state/contact_ends.h>
 #include <axiforge/state/gauges.h>
 
 namespace axiforge
@@ -125,6 +126,19 @@ namespace axiforge
     }
 
 
+    /// What touches of an edge past its last node.
+    void add_end(const State       &state,
+                 const ContactEnd  &end,
+                 const unsigned int component,
+                 Extreme           &extreme)
+    {
+      constexpr double place[3] = { -1, 1, 0 };
+      const double     from = place[end.last], to = from + end.share * (place[end.next] - from);
+      extreme.add(along(state, state.tables.edges[end.edge], component), std::min(from, to),
+                  std::max(from, to));
+    }
+
+
     bool is_surface(const State &state, const BoundaryEdge &edge)
     {
       for (const char *name : { "axis", "symmetry" })
@@ -152,12 +166,18 @@ namespace axiforge
   } // namespace
 
 
-  std::vector<double> read_gauges(const std::vector<Gauge> &gauges, const State &state)
+  std::vector<double> read_gauges(const scene::Scene &scene, const State &state)
   {
+    const std::vector<Gauge> &gauges = scene.gauges;
     if (!optional_features || gauges.empty())
       return {};
-    const Phase         phase("gauges");
-    std::vector<double> found;
+    const Phase             phase("gauges");
+    std::vector<double>     found;
+    std::vector<ContactEnd> ends;
+    if (std::any_of(gauges.begin(), gauges.end(),
+                    [](const Gauge &gauge) { return gauge.place == Gauge::Place::contact; }))
+      ends = contact_ends(scene, state, state.contacts, state.time,
+                          [&](const unsigned int node) { return state.node_position(node); });
     for (const Gauge &gauge : gauges)
       {
         const double line = gauge.place == Gauge::Place::middle
@@ -176,6 +196,10 @@ namespace axiforge
               else if (is_surface(state, edge))
                 extreme.add(x, -1, 1);
             }
+        if (gauge.place == Gauge::Place::contact)
+          for (const ContactEnd &end : ends)
+            if (end.tool == gauge.tool)
+              add_end(state, end, gauge.component, extreme);
         found.push_back(extreme.found);
       }
     std::vector<double> least(found.size());

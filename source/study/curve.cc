@@ -48,17 +48,15 @@ namespace axiforge::study
 
   Curve curve_of(const History &history, const std::string &column, const bool against_time)
   {
-    const int  x_column = history.find(against_time ? "time_s" : "stroke_mm");
-    const int  y_column = history.find(column);
     const bool middle   = holds_at_middle(column);
+    const int  x_column = history.find(against_time ? (middle ? "time_middle_s" : "time_s")
+                                                    : (middle ? "stroke_middle_mm" : "stroke_mm"));
+    const int  y_column = history.find(column);
 
-    Curve  curve;
-    double before = 0; // place of the end of the last step
+    Curve curve;
     for (const std::vector<double> &row : history.rows)
       {
-        const double now   = row[x_column];
-        const double place = middle ? 0.5 * (before + now) : now;
-        before             = now;
+        const double place = row[x_column];
         if (!curve.place.empty() && place <= curve.place.back())
           {
             if (place == curve.place.back())

@@ -133,9 +133,22 @@ namespace axiforge::solvers
     void scatter_force(unsigned int cell, const CellDofs &force, Field &target) const;
     void finish(FlowResult &result);
     void record_tools(StepRecord &record);
+    /// Adds what the contact reaches beyond its last nodes to the radii of the tools [mm] and to
+    /// their (radius, slip).
+    void add_contact_ends(std::vector<double>                             &radius,
+                          std::vector<std::vector<std::array<double, 2>>> &slip) const;
     void record_powers(StepRecord &record);
     void record_boundaries(StepRecord &record);
-    void estimate_solver_errors(StepRecord &record) const;
+
+    /// What a boundary condition does, summed over this rank's part of it.
+    struct BoundarySums
+    {
+      double power = 0, force = 0; ///< on the workpiece [mW], [N]
+      double load = 0, extent = 0; ///< their quotient is the mean pressure
+    };
+    BoundarySums sums_of_velocity(unsigned int condition) const;
+    BoundarySums sums_of_pressure(unsigned int condition) const;
+    void         estimate_solver_errors(StepRecord &record) const;
 
     const scene::Scene &scene;
     const State        &state;

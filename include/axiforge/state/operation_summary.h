@@ -15,7 +15,7 @@ namespace axiforge
     double       stroke         = 0; ///< [mm]
     double       height         = 0; ///< of the workpiece [mm]
     double       fill           = 0; ///< share; 0 if it is not asked for
-    double       force          = 0; ///< of the driving tool in the last step [N]
+    double       force          = 0; ///< of the driving tool at the end [N]
     double       largest_force  = 0; ///< of the driving tool [N]
     double       work           = 0; ///< of all tools and boundaries [mJ]
     double       imbalance      = 0; ///< largest axial sum of the tools' forces over their largest

@@ -17,14 +17,17 @@ namespace axiforge
     double contact_radius = 0; ///< largest radius that touches [mm]; 0: no contact
     double neutral_radius =
         std::numeric_limits<double>::quiet_NaN(); ///< where slip changes sign [mm]
+    double end_force   = 0; ///< force at the end of the step, extrapolated [N]
+    double force_slope = 0; ///< from the step before to this one [N/s]
   };
 
-  /// Power that a prescribed boundary puts in, and the volume it displaces.
+  /// What a boundary with a prescribed velocity or pressure does.
   struct BoundaryRecord
   {
     double force    = 0; ///< axial, on the workpiece [N]
     double power    = 0; ///< [mW]
-    double pressure = 0; ///< mean: power over the volume swept per time [MPa]
+    double pressure = 0; ///< mean [MPa]: power over the volume swept per time; of a pressure, over
+                         ///< the area
   };
 
   /// Seconds of the step's phases; wall time of this rank.
@@ -49,7 +52,11 @@ namespace axiforge
     unsigned int step      = 0;
     double       time      = 0; ///< at the end of the step [s]
     double       time_step = 0; ///< [s]
-    double       stroke    = 0; ///< [mm]
+    double       stroke    = 0; ///< at the end of the step [mm]
+
+    /// Where the forces and powers hold: the middle of the step, with the explicit scheme its
+    /// start.
+    double time_middle = 0, stroke_middle = 0;
 
     std::vector<ToolRecord>     tools;
     std::vector<BoundaryRecord> boundaries;
