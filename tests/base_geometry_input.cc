@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // CSV tables, geometry parameters and the gmsh session.
+#include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -13,6 +16,7 @@
 
 #include <axiforge/base/csv.h>
 #include <axiforge/base/errors.h>
+#include <axiforge/base/forked.h>
 #include <axiforge/base/geometry_parameters.h>
 #include <axiforge/base/gmsh_session.h>
 
@@ -89,6 +93,16 @@ TEST_F(Input, CsvInItsVariants)
       EXPECT_EQ(table.find_column("force"), -1);
       EXPECT_EQ(table.rows, std::vector<std::vector<double>>({ { 0, 1.5 }, { 0.2, -3 } }));
     }
+  // As spreadsheets write them.
+  for (const std::string text :
+       { "sep=;\ntime_s;force_N;\n0;1.5;\n;;\n0.2;-3;\n",
+         "\"sep=,\"\n\"time_s\",\"force_N\"\n\"0\",1.5\n0.2,\"-3\"\n",
+         "time_s,force_N\r0,1.5\r0.2,-3\r", "SEP=\t\ntime_s\tforce_N\n0\t1.5\n0.2\t-3\n" })
+    {
+      const CsvTable table = read_csv(file("a.csv", text), "Entry");
+      EXPECT_EQ(table.header, std::vector<std::string>({ "time_s", "force_N" })) << text;
+      EXPECT_EQ(table.rows, std::vector<std::vector<double>>({ { 0, 1.5 }, { 0.2, -3 } })) << text;
+    }
   const CsvTable plain = read_csv(file("a.csv", "\n1,2\n3,4"), "Entry");
   EXPECT_TRUE(plain.header.empty());
   EXPECT_EQ(plain.columns(), 2u);
@@ -106,6 +120,14 @@ TEST_F(Input, FaultyCsv)
   fault("a,b\n1,2,3\n", { "line 2", "3 entries" });
   fault("1,nan\n", { "nan" });
   fault("1,5;2,5\n1,5;3,5\n", { "1,5" }); // decimal commas: taken for a header, then found out
+  fault("1,5;2,5\n1,5;3,5\n", { "line 1", "The decimal sign is a point" });
+  fault("a,b\n1,5,2,5\n", { "line 2 has 4 entries", "The decimal sign is a point" });
+  fault("a,b\n1,\xE2\x88\x92\x32\n", { "line 2", "U+2212 (minus sign)" });
+  fault(std::string("\xFF\xFE"
+                    "1\0,\0"
+                    "2\0",
+                    8),
+        { "UTF-16" });
   fault("# nothing\n", { "0 row" });
   expect_fault([&]() { read_csv(folder + "/none.csv", "Tool/Table"); },
                { "Tool/Table", "none.csv" });
@@ -207,6 +229,65 @@ TEST_F(Input, GmshAfterGmsh)
       session.open(file("line.geo", line_geo), { { "Radius", 1. + i } });
       EXPECT_EQ(radius(), 1. + i);
     }
+}
+
+TEST(Forked, TellsHowTheChildEnded)
+{
+  EXPECT_EQ(fate_of([] {}), "");
+  EXPECT_EQ(fate_of([] { throw InputError("the parent meets it again"); }), "");
+  EXPECT_EQ(fate_of([] { std::exit(0); }), "ended the process");
+  EXPECT_EQ(fate_of([] { std::abort(); }).rfind("crashed (", 0), 0u);
+  EXPECT_EQ(fate_of([] { std::raise(SIGSEGV); }).rfind("crashed (", 0), 0u);
+}
+
+TEST_F(Input, CommandsThatReachBeyondTheGeometry)
+{
+  const auto refused = [&](const std::string &text, const std::vector<std::string> &parts) {
+    expect_fault([&]() { GmshSession().open(file("a.geo", line_geo + text), {}, "E"); }, parts);
+  };
+  const std::string called = folder + "/called";
+  refused("SystemCall \"touch " + called + "\";", { "E", "a.geo", "SystemCall", "runs a program" });
+  refused("NonBlockingSystemCall(\"touch " + called + "\");", { "runs a program" });
+  EXPECT_FALSE(std::filesystem::exists(called));
+  refused("Exit ;", { "would end the program" });
+  file("b.geo", "/* Exit; */ If (1)\n Exit;\nEndIf\n");
+  refused("Include \"b.geo\";", { "a.geo", "b.geo", "Exit" });
+  refused("Merge \"b.geo\";", { "b.geo", "Exit" });
+  GmshSession().open(
+      file("c.geo", std::string(line_geo) + "// Exit;\nExited = 1; /* SystemCall */"));
+}
+
+TEST_F(Input, DamagedStepFiles)
+{
+  const std::string path = folder + "/disc.step";
+  {
+    GmshSession session;
+    session.run("writing", [&] {
+      gmsh::clear();
+      gmsh::model::occ::addRectangle(0, 0, 0, 10, 5);
+      gmsh::model::occ::synchronize();
+      gmsh::write(path);
+    });
+  }
+  std::ifstream     in(path);
+  const std::string text{ std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>() };
+  GmshSession().open(path);
+  const auto damaged = [&](const std::string &name, const std::string &part,
+                           const std::string &other) {
+    std::string       changed = text;
+    const std::size_t at      = text.find(part);
+    ASSERT_NE(at, std::string::npos) << text;
+    changed.replace(at, part.size(), other);
+    const std::string damaged_path = file(name, changed);
+    expect_fault([&]() { GmshSession().open(damaged_path, {}, "E"); },
+                 { "E", name, "it is damaged", "Export it anew" });
+  };
+  damaged("cut.step", "END-ISO-10303-21;", "");
+  const std::size_t line  = text.rfind('\n', text.find("= LINE("));
+  const std::string curve = text.substr(line + 1, text.find(';', line) - line);
+  damaged("missing.step", curve, "");
+  damaged("point.step", curve,
+          curve.substr(0, curve.find('=')) + "= CARTESIAN_POINT('',(0.,0.,0.));");
 }
 
 TEST_F(Input, FaultyGmshFiles)

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <axiforge/base/errors.h>
+#include <axiforge/base/notes.h>
 #include <axiforge/base/parameter_file.h>
 #include <axiforge/base/wording.h>
 
@@ -124,14 +125,16 @@ namespace
           "  set Velocity = 1, \\\n"
           "                 -2\n"
           "  SET Steps = 20\n"
-          "  set Steps = 30\n"
+          "end\n"
+          "subsection Time\n"
+          "  set Steps = 20\n"
           "end\n"
           "set Heat = true");
     EXPECT_EQ(values.title, "a = b");
     EXPECT_EQ(values.yield_stress, 250);
     EXPECT_EQ(values.law, "norton");
     EXPECT_EQ(values.velocity, (std::vector<double>{ 1, -2 }));
-    EXPECT_EQ(values.steps, 30);
+    EXPECT_EQ(values.steps, 20);
     EXPECT_TRUE(values.heat);
     prm.enter_subsection("Material"); // the handler is at its top level again
     prm.enter_subsection("Rate");
@@ -175,7 +178,6 @@ namespace
     EXPECT_EQ(file.path(), folder + "/case.prm");
     EXPECT_EQ(file.directory(), folder);
     EXPECT_EQ(file.resolved_text(),
-              "subsection Time\n  set Steps = 20\nend\n"
               "subsection Time\n  set Steps = 21\nend\n"
               "subsection Material\n  subsection Rate\n    set Exponent = 0.3\n  end\nend\n"
               "set Title = x = y\n");
@@ -185,6 +187,101 @@ namespace
     other.declare(other_prm);
     ParameterFile(write("resolved.prm", file.resolved_text())).parse(other_prm);
     EXPECT_EQ(other.steps, 21);
+  }
+
+  // Two values in one file: one of them would do nothing.
+  TEST_F(ParameterFileTest, AnEntryGivenTwice)
+  {
+    const std::string text =
+        message("subsection Time\n set Steps = 3\nend\n"
+                "subsection Time\n set Velocity = 1, 2\n set Steps = 4\nend\n");
+    EXPECT_EQ(text.substr(0, 11), "case.prm:6:");
+    EXPECT_NE(text.find("Entry \"Time/Steps\" = \"4\": it is given twice, with \"3\" at"),
+              std::string::npos);
+    EXPECT_NE(text.find("case.prm:2"), std::string::npos);
+    parse("subsection Time\n set Steps = 5\n set Steps = 5\nend\n"); // the same: nothing lost
+    EXPECT_EQ(values.steps, 5);
+  }
+
+  TEST_F(ParameterFileTest, AnIncludedFileMayBeChanged)
+  {
+    take_notes();
+    write("common.prm", "set Title = common\nsubsection Time\n set Steps = 3\nend\n");
+    parse("include common.prm\nsubsection Time\n set Steps = 4\nend\n", { "Time/Steps = 6" });
+    EXPECT_EQ(values.steps, 6);
+    EXPECT_TRUE(take_notes().empty());
+    // The other way round the scene's own value does nothing.
+    parse("set Title = mine\ninclude common.prm\n");
+    const std::vector<std::string> notes = take_notes();
+    ASSERT_EQ(notes.size(), 1u);
+    EXPECT_NE(notes[0].find("Entry \"Title\" = \"mine\" at"), std::string::npos);
+    EXPECT_NE(notes[0].find("is replaced by \"common\""), std::string::npos);
+  }
+
+  TEST_F(ParameterFileTest, ACommentDoesNotSwallowTheNextLine)
+  {
+    take_notes();
+    parse("subsection Time\n # values from D:\\time\\\n set Steps = 7\nend\n");
+    EXPECT_EQ(values.steps, 7);
+    const std::vector<std::string> notes = take_notes();
+    ASSERT_EQ(notes.size(), 1u);
+    EXPECT_NE(notes[0].find("case.prm:2: The comment ends in a backslash"), std::string::npos);
+  }
+
+  TEST_F(ParameterFileTest, EncodingsAndLookAlikes)
+  {
+    parse("subsection Time\r set Steps = 8\rend\r"); // lines of old Macs
+    EXPECT_EQ(values.steps, 8);
+    parse("subsection Time\r\r\n set Steps = 9\r\r\nend\r\r\n");
+    EXPECT_EQ(values.steps, 9);
+    EXPECT_NE(message("set Nothing = 1\r").find("case.prm:1: Unknown entry"), std::string::npos);
+    parse("set Title = 5 \xE2\x80\x93 6\xC2\xA0mm, \xC3\xBC\n"); // prose is free
+    EXPECT_EQ(values.title, "5 \xE2\x80\x93 6\xC2\xA0mm, \xC3\xBC");
+
+    const auto says = [&](const std::string &text, const std::string &part) {
+      const std::string what = message(text);
+      EXPECT_NE(what.find(part), std::string::npos) << what;
+    };
+    std::string wide = "\xFF\xFE";
+    for (const char c : std::string("set Title = x\n"))
+      (wide += c) += '\0';
+    says(wide, "is in UTF-16");
+    says(wide.substr(2), "is in UTF-16");
+    says(std::string("set Title = x\nset Ti\0le = y\n", 29), "NUL byte in line 2");
+    says("set Ti\xC2\xA0tle = x\n", "case.prm:1: \"Ti\xC2\xA0tle\" has the character U+00A0 "
+                                    "(no-break space). Write an ordinary blank.");
+    says("\xC2\xA0set Title = x\n", "U+00A0 (no-break space)");
+    says("set Tit\xD0\xBB\x65 = x\n", "U+043B");
+    says("set Tit\xFC = x\n", "the byte 0xFC, which is no UTF-8");
+    says("subsection Time\n set Velocity = 0, \xE2\x88\x92\x31\nend\n",
+         "case.prm:2: \"0, \xE2\x88\x92\x31\" has the character U+2212 (minus sign). Write the "
+         "minus "
+         "sign - of the keyboard.");
+    says("subsection\xC2\xA0Time\nend\n", "U+00A0");
+  }
+
+  TEST_F(ParameterFileTest, DecimalCommasInLists)
+  {
+    EXPECT_NE(message("subsection Time\n set Velocity = 0, -0,5\nend\n")
+                  .find("The decimal sign is a point."),
+              std::string::npos);
+    EXPECT_NE(
+        message("subsection Time\n set Steps = 1,000\nend\n").find("The decimal sign is a point."),
+        std::string::npos);
+  }
+
+  TEST_F(ParameterFileTest, IncludesWithoutEnd)
+  {
+    for (int level = 0; level < 20; ++level)
+      write("level" + std::to_string(level) + ".prm", "include level" + std::to_string(level + 1) +
+                                                          ".prm\ninclude level" +
+                                                          std::to_string(level + 1) + ".prm\n");
+    write("level20.prm", "set Title = x\n");
+    EXPECT_NE(message("include level0.prm\n").find("the includes have no end"), std::string::npos);
+    EXPECT_NE(message("include /dev/zero\n").find("is a device"), std::string::npos);
+    std::filesystem::create_symlink("self.prm", folder + "/link.prm");
+    write("self.prm", "include link.prm\n");
+    EXPECT_NE(message("include self.prm\n").find("includes itself"), std::string::npos);
   }
 
   TEST_F(ParameterFileTest, FirstPassSkipsWhatIsNotDeclared)
@@ -369,6 +466,73 @@ namespace
     EXPECT_EQ(words(Patterns::List(Patterns::Integer(), 0, 3, ";")),
               "a list, separated by \";\", of 0 to 3 elements, each a whole number");
   }
+  /// Lists, files and families of sections as scenes have them.
+  class ScenesOwn : public ParameterFileTest
+  {
+  protected:
+    void SetUp() override
+    {
+      ParameterFileTest::SetUp();
+      prm.add_parameter("Tools", tools);
+      prm.enter_subsection("Tool upper");
+      prm.add_parameter("Geometry file", file);
+      prm.add_parameter("Geometry parameters", parameters);
+      prm.leave_subsection();
+    }
+    std::string tools, file, parameters;
+  };
+
+  TEST_F(ScenesOwn, OneGeometryParameterIsSet)
+  {
+    take_notes();
+    const std::string text =
+        "subsection Tool upper\n set Geometry parameters = R = 10, Z = 5\nend\n";
+    parse(text,
+          { "Tool upper/Geometry parameters/Z = 7", "Tool upper/Geometry parameters/Draft = 3" });
+    EXPECT_EQ(parameters, "R = 10, Z = 7, Draft = 3");
+    const ParameterFile read(write("case.prm", text), { "Tool upper/Geometry parameters/Z = 7" });
+    EXPECT_EQ(read.resolved_text(),
+              "subsection Tool upper\n  set Geometry parameters = R = 10, Z = 7\nend\n");
+    EXPECT_TRUE(take_notes().empty());
+
+    parse(text, { "Tool upper/Geometry parameters = Z = 7" });
+    EXPECT_EQ(parameters, "Z = 7");
+    const std::vector<std::string> notes = take_notes();
+    ASSERT_EQ(notes.size(), 1u);
+    EXPECT_NE(notes[0].find("replaces the whole list \"R = 10, Z = 5\": R back at the default"),
+              std::string::npos);
+    parse(text, { "Tool upper/Geometry parameters = Z = 7, R = 3" });
+    EXPECT_TRUE(take_notes().empty());
+  }
+
+  TEST_F(ScenesOwn, FilesLieBesideTheFileThatNamesThem)
+  {
+    write("common/press.prm", "subsection Tool upper\n set Geometry file = a b.geo\nend\n");
+    write("common/a b.geo", "");
+    write("scenes/case.prm", "include ../common/press.prm\n");
+    ParameterFile(folder + "/scenes/case.prm").parse(prm);
+    EXPECT_EQ(file, "../common/a b.geo");
+    std::filesystem::remove(folder + "/common/a b.geo");
+    write("scenes/a b.geo", ""); // where it was looked for in earlier versions
+    ParameterFile(folder + "/scenes/case.prm").parse(prm);
+    EXPECT_EQ(file, "a b.geo");
+    parse("subsection Tool upper\n set Geometry file = \"a b.geo\"\nend\n");
+    EXPECT_EQ(file, "a b.geo");
+    parse("", { "Tool upper/Geometry file = \"c d.geo\"" });
+    EXPECT_EQ(file, "c d.geo");
+  }
+
+  TEST_F(ScenesOwn, AToolThatIsNotInTheList)
+  {
+    EXPECT_EQ(message("set Tools = upper\nsubsection Tool lower\nend\n"),
+              "case.prm:2: Unknown section \"Tool lower\". The list \"Tools\" = \"upper\" does not "
+              "have it: add lower to \"set Tools\", as \"set Tools = upper, lower\", or take the "
+              "section out.");
+    EXPECT_NE(message("set Tools = upper\nsubsection Tool uper\nend\n")
+                  .find("Or did you mean \"Tool upper\"?"),
+              std::string::npos);
+  }
+
 } // namespace
 
 int main(int argc, char **argv)

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <sstream>
+#include <string_view>
+
 #include <deal.II/base/parameter_handler.h>
 
+#include <axiforge/base/csv.h>
 #include <axiforge/base/geometry_parameters.h>
 
 namespace axiforge
@@ -66,5 +70,26 @@ namespace axiforge
                       "file (.step, .stp, .brep) has no groups, there it is always all curves. "
                       "Curves on the axis "
                       "r = 0 are left out. Not used for .csv.");
+  }
+
+  std::string with_geometry_parameter(const std::string &list,
+                                      const std::string &name,
+                                      const std::string &value)
+  {
+    std::istringstream parts(list);
+    std::string        part, result;
+    bool               found = false;
+    while (std::getline(parts, part, ','))
+      {
+        part = trim(part);
+        if (part.empty())
+          continue;
+        const bool here = trim(std::string_view(part).substr(0, part.find('='))) == name;
+        found           = found || here;
+        result += (result.empty() ? "" : ", ") + (here ? name + " = " + value : part);
+      }
+    if (!found)
+      result += (result.empty() ? "" : ", ") + name + " = " + value;
+    return result;
   }
 } // namespace axiforge

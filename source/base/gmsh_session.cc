@@ -6,13 +6,16 @@
 #include <fstream>
 #include <iterator>
 #include <regex>
+#include <set>
 
 #include <fmt/format.h>
 #include <gmsh.h>
 
 #include <axiforge/base/csv.h>
 #include <axiforge/base/errors.h>
+#include <axiforge/base/forked.h>
 #include <axiforge/base/gmsh_session.h>
+#include <axiforge/base/step_file.h>
 #include <axiforge/base/wording.h>
 
 namespace axiforge
@@ -34,25 +37,82 @@ namespace axiforge
       return extension == ".step" || extension == ".stp" || extension == ".brep";
     }
 
-    /// A `.geo` that ends gmsh would end this program, silently and with status 0.
-    bool has_exit_command(const std::string &file)
+    /// What a `.geo` says, and what it says outside of comments and texts in quotes.
+    struct Script
     {
-      std::ifstream     in(file);
-      const std::string text{ std::istreambuf_iterator<char>(in),
-                              std::istreambuf_iterator<char>() };
-      std::string       code;
-      for (std::size_t i = 0; i < text.size();)
-        if (text.compare(i, 2, "//") == 0)
-          i = std::min(text.find('\n', i), text.size());
-        else if (text.compare(i, 2, "/*") == 0)
-          i = std::min(text.find("*/", i + 2), text.size() - 2) + 2;
-        else if (text[i] == '"')
-          i = std::min(text.find('"', i + 1), text.size() - 1) + 1;
-        else
-          code += text[i++];
-      static const std::regex command(R"((^|[^A-Za-z0-9_])Exit\s*;)");
-      return std::regex_search(code, command);
+      std::string without_comments, code;
+
+      explicit Script(const std::string &file)
+      {
+        std::ifstream     in(file, std::ios::binary);
+        const std::string text{ std::istreambuf_iterator<char>(in),
+                                std::istreambuf_iterator<char>() };
+        const auto        end = [&](const std::string &mark, const std::size_t from) {
+          const std::size_t at = text.find(mark, from);
+          return at == std::string::npos ? text.size() : at + mark.size();
+        };
+        for (std::size_t i = 0; i < text.size();)
+          if (text.compare(i, 2, "//") == 0)
+            i = std::min(text.find('\n', i), text.size());
+          else if (text.compare(i, 2, "/*") == 0)
+            i = end("*/", i + 2);
+          else if (text[i] == '"')
+            {
+              const std::size_t behind = end("\"", i + 1);
+              without_comments += text.substr(i, behind - i);
+              i = behind;
+            }
+          else
+            {
+              without_comments += text[i];
+              code += text[i++];
+            }
+      }
+    };
+
+    struct Forbidden
+    {
+      std::string command, does;
+    };
+
+    /**
+     * Refuses a `.geo` whose commands reach beyond the geometry: `Exit` ends this program, silently
+     * and with status 0; others run programs. Files that it merges or includes count as well.
+     */
+    void check_commands(const std::string &script,
+                        const std::string &file,
+                        const std::string &entry,
+                        const unsigned int depth = 0)
+    {
+      static const std::vector<Forbidden> forbidden = {
+        { R"(Exit\s*;)", "would end the program" },
+        { R"((NonBlocking)?SystemCall\b)", "runs a program" },
+        { R"(OnelabRun\b)", "runs a program" },
+        { R"(GetValue\b)", "waits for an answer from the keyboard" }
+      };
+      const Script text(script);
+      for (const Forbidden &f : forbidden)
+        {
+          const std::regex command("(^|[^A-Za-z0-9_])(" + f.command + ")");
+          std::smatch      found;
+          if (std::regex_search(text.code, found, command))
+            throw InputError::entry(entry, file,
+                                    fmt::format("{} has the command \"{}\", which {}",
+                                                depth == 0 ? "it" : "\"" + script + "\"",
+                                                found[2].str(), f.does),
+                                    "", "Remove that line");
+        }
+      constexpr unsigned int  most = 10;
+      static const std::regex other(R"re((Include|Merge|MergeFile)\s+"([^"\n]+)")re");
+      for (auto it = std::sregex_iterator(text.without_comments.begin(),
+                                          text.without_comments.end(), other);
+           it != std::sregex_iterator() && depth < most; ++it)
+        check_commands((std::filesystem::path(script).parent_path() / (*it)[2].str()).string(),
+                       file, entry, depth + 1);
     }
+
+    /// Files that gmsh has read in a process of its own without crashing, with their last change.
+    std::set<std::string> tried;
 
     /// Names of the parameters that the loaded `.geo` itself defined.
     std::vector<std::string> parameters_of_file()
@@ -90,9 +150,13 @@ namespace axiforge
             std::string(trim(std::string_view(text).substr(begin, end - begin)));
         begin = end + 1;
 
-        const std::size_t equals = item.find('=');
+        const std::size_t equals   = item.find('=');
+        double            decimals = 0;
         if (equals == std::string::npos)
-          throw wrong(fmt::format("\"{}\" has no \"=\"", item));
+          throw wrong(fmt::format("\"{}\" has no \"=\"{}", item,
+                                  !parameters.empty() && parse_number(item, decimals)
+                                      ? ", and the decimal sign is a point"
+                                      : ""));
         const std::string name(trim(std::string_view(item).substr(0, equals)));
         const std::string number(trim(std::string_view(item).substr(equals + 1)));
         double            value = 0;
@@ -175,9 +239,21 @@ namespace axiforge
           logged.push_back(line.substr(prefix.size()));
     if (!logged.empty())
       errors = logged;
+    if (!errors.empty() && file.empty()) // a mesh of the program's own
+      throw ComputationError(
+          fmt::format("gmsh failed while {}: {}", what, fmt::join(errors, "; ")));
     if (!errors.empty())
       throw InputError::entry(
           entry, file, fmt::format("gmsh failed while {}: {}", what, fmt::join(errors, "; ")));
+  }
+
+  void GmshSession::try_out(const std::string &what, const std::function<void()> &action) const
+  {
+    const std::string fate = fate_of(action);
+    if (!fate.empty())
+      throw InputError::entry(entry, file, fmt::format("gmsh {} while {}", fate, what), "",
+                              "The file is damaged, or has something that gmsh can't take: write "
+                              "it anew, or try it in gmsh itself");
   }
 
   void GmshSession::open(const std::string    &new_file,
@@ -199,18 +275,33 @@ namespace axiforge
                               fmt::format("it can't take geometry parameters ({} was given)",
                                           parameters.begin()->first),
                               "parameters for a .geo only");
-    if (extension == ".geo" && has_exit_command(file))
-      throw InputError::entry(entry, file,
-                              "it has the command \"Exit;\", which would end the program", "",
-                              "Remove that line");
+    if (extension == ".geo")
+      check_commands(file, file, entry);
+    else if (extension != ".msh" && extension != ".brep")
+      check_step_text(file, entry);
 
-    run("reading the file", [&]() {
+    const auto read = [&]() {
       gmsh::clear();
       gmsh::onelab::clear();
       for (const auto &[name, value] : parameters)
         gmsh::onelab::setNumber(name, { value });
       gmsh::open(file);
-    });
+    };
+    std::error_code ignored;
+    std::string     state =
+        file +
+        std::to_string(std::filesystem::last_write_time(file, ignored).time_since_epoch().count());
+    for (const auto &[name, value] : parameters)
+      state += fmt::format(",{}={}", name, value);
+    if (tried.insert(state).second)
+      try_out("reading the file", read);
+    run("reading the file", read);
+    if (extension == ".step" || extension == ".stp")
+      {
+        gmsh::vectorpair curves;
+        gmsh::model::getEntities(curves, 1);
+        check_step_curves(file, entry, curves.size());
+      }
 
     const std::vector<std::string> known = parameters_of_file();
     for (const auto &[name, value] : parameters)
@@ -257,6 +348,11 @@ namespace axiforge
         names.push_back(name.empty() ? std::to_string(group.second) : name);
       }
     return names;
+  }
+
+  bool GmshSession::mentions(const std::string &word) const
+  {
+    return lower_extension(file) == ".geo" && Script(file).code.find(word) != std::string::npos;
   }
 
   bool GmshSession::holds_mesh() const

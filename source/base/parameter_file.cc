@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <sstream>
 
 #include <deal.II/base/utilities.h>
 
 #include <axiforge/base/errors.h>
+#include <axiforge/base/geometry_parameters.h>
+#include <axiforge/base/notes.h>
 #include <axiforge/base/parameter_file.h>
 #include <axiforge/base/wording.h>
 
@@ -27,48 +26,6 @@ namespace axiforge
       for (const std::string &section : sections)
         path += section + "/";
       return path + name;
-    }
-
-    std::string trimmed(const std::string &text)
-    {
-      const std::string blanks = " \t\r\n\v\f";
-      const std::size_t first  = text.find_first_not_of(blanks);
-      if (first == std::string::npos)
-        return "";
-      return text.substr(first, text.find_last_not_of(blanks) - first + 1);
-    }
-
-    /// The rest of @p line behind @p keyword (given in lower case, also accepted in upper case).
-    bool take_keyword(const std::string &line, const std::string &keyword, std::string &rest)
-    {
-      const std::string start = line.substr(0, keyword.size());
-      std::string       upper = keyword;
-      for (char &c : upper)
-        c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-      if (start != keyword && start != upper)
-        return false;
-      if (line.size() > keyword.size() && line[keyword.size()] != ' ' &&
-          line[keyword.size()] != '\t')
-        return false;
-      rest = trimmed(line.substr(keyword.size()));
-      return true;
-    }
-
-    std::string contents_of(const std::string &path, const std::string &whence)
-    {
-      std::error_code ignored;
-      if (std::filesystem::is_directory(path, ignored))
-        throw InputError(whence + "\"" + path + "\" is a folder, not a parameter file.");
-      errno = 0;
-      std::ifstream      in(path, std::ios::binary);
-      std::ostringstream text;
-      if (in && in.peek() != std::ifstream::traits_type::eof())
-        text << in.rdbuf();
-      if (!in.is_open() || in.bad())
-        throw InputError(whence + "Cannot read the parameter file \"" + path +
-                         "\": " + (errno != 0 ? std::strerror(errno) : "unknown error") +
-                         ". Check its name, and the folder it is looked for in.");
-      return text.str();
     }
 
     /// The text of an exception of deal.II in one line.
@@ -98,7 +55,7 @@ namespace axiforge
         std::string        line, rest;
         while (std::getline(in, line))
           {
-            line = trimmed(line);
+            line = without_blanks(line);
             if (take_keyword(line, "subsection", rest))
               {
                 sections[joined(open, "")].push_back(rest);
@@ -107,7 +64,7 @@ namespace axiforge
             else if (line == "end" && !open.empty())
               open.pop_back();
             else if (take_keyword(line, "set", rest) && rest.find('=') != std::string::npos)
-              entries[joined(open, "")].push_back(trimmed(rest.substr(0, rest.find('='))));
+              entries[joined(open, "")].push_back(without_blanks(rest.substr(0, rest.find('='))));
           }
       }
 
@@ -122,6 +79,79 @@ namespace axiforge
         return found;
       }
     };
+
+    const std::string geometry_parameters = "Geometry parameters";
+
+    /// The names of a list "a = 1, b = 2".
+    std::vector<std::string> names_of_list(const std::string &list)
+    {
+      std::vector<std::string> names;
+      std::istringstream       parts(list);
+      std::string              part;
+      while (std::getline(parts, part, ','))
+        names.push_back(without_blanks(part.substr(0, part.find('='))));
+      return names;
+    }
+
+    /// What an entry has after a statement: the value, or the list with an element changed.
+    std::string value_after(const Statement &statement, const std::string &before)
+    {
+      return statement.key.empty()
+                 ? statement.value
+                 : with_geometry_parameter(before, statement.key, statement.value);
+    }
+
+    /// The full name of the entry of each statement that sets one; empty for the others.
+    std::vector<std::string> paths_of(const std::vector<Statement> &statements)
+    {
+      Sections                 open;
+      std::vector<std::string> paths;
+      for (const Statement &statement : statements)
+        {
+          if (statement.keyword == Keyword::subsection)
+            open.push_back(statement.name);
+          else if (statement.keyword == Keyword::end)
+            open.pop_back();
+          paths.push_back(statement.keyword == Keyword::set ? joined(open, statement.name) : "");
+        }
+      return paths;
+    }
+    /**
+     * What to do about a section "Tool lower" where the list "Tools" doesn't have "lower". Empty if
+     * it is no such section.
+     */
+    std::string way_out_of_family(const ParameterHandler       &prm,
+                                  const std::vector<Statement> &statements,
+                                  const std::string            &section)
+    {
+      const std::size_t blank = section.find(' ');
+      if (blank == std::string::npos)
+        return "";
+      const std::string family = section.substr(0, blank), member = section.substr(blank + 1);
+      const Declared    declared(prm);
+      const auto        top = declared.entries.find("");
+      if (top == declared.entries.end())
+        return "";
+      for (const std::string &list : { family + "s", family.substr(0, family.size() - 1) + "ies" })
+        {
+          if (std::find(top->second.begin(), top->second.end(), list) == top->second.end())
+            continue;
+          const std::vector<std::string> paths = paths_of(statements);
+          std::string                    value; // wherever it stands in the file
+          for (std::size_t i = 0; i < statements.size(); ++i)
+            if (paths[i] == list)
+              value = statements[i].value;
+          std::vector<std::string> members = dealii::Utilities::split_string_list(value);
+          if (std::find(members.begin(), members.end(), member) != members.end())
+            return "";
+          const std::string nearest = closest_name(member, members);
+          return " The list \"" + list + "\" = \"" + value + "\" does not have it: add " + member +
+                 " to \"set " + list + "\", as \"set " + list + " = " +
+                 (value.empty() ? "" : value + ", ") + member + "\", or take the section out." +
+                 (nearest.empty() ? "" : " Or did you mean \"" + family + " " + nearest + "\"?");
+        }
+      return "";
+    }
 
     [[noreturn]] void throw_unknown(const std::string                                     &origin,
                                     const std::string                                     &what,
@@ -164,7 +194,10 @@ namespace axiforge
       const std::string nearest = closest_name(value, selection_of_pattern(pattern));
       if (!nearest.empty())
         way_out = "Did you mean \"" + nearest + "\"?";
-      else if (pattern.compare(0, 7, "[Double") == 0 && value.find(',') != std::string::npos)
+      else if (const bool number =
+                   pattern.compare(0, 7, "[Double") == 0 || pattern.compare(0, 8, "[Integer") == 0;
+               (number || pattern.compare(0, 17, "[List of <[Double") == 0) &&
+               std::count(value.begin(), value.end(), ',') > (number ? 0 : 1))
         way_out = "The decimal sign is a point.";
       else if (pattern.compare(0, 7, "[Double") == 0 && !value.empty() &&
                std::isdigit(static_cast<unsigned char>(value[0])) &&
@@ -212,139 +245,50 @@ namespace axiforge
     private:
       ParameterHandler &prm;
     };
+
   } // namespace
 
   ParameterFile::ParameterFile(const std::string &path, const std::vector<std::string> &overrides)
       : path_(path)
-      , text_(contents_of(path, ""))
+      , statements_(read_statements(path, text_))
+      , n_of_file_(statements_.size())
   {
-    std::vector<std::string> open_files;
-    read_file(path, open_files);
-    n_of_file_ = statements_.size();
+    add_overrides(overrides);
+  }
+
+  ParameterFile::ParameterFile(const std::vector<std::string> &overrides)
+  {
+    add_overrides(overrides);
+  }
+
+  void ParameterFile::add_overrides(const std::vector<std::string> &overrides)
+  {
     for (const std::string &text : overrides)
-      add_override(text);
+      {
+        const std::vector<Statement> added = statements_of_override(text);
+        for (const Statement &statement : added)
+          if (statement.name == geometry_parameters && statement.key.empty())
+            note_dropped(paths_of(added).at(&statement - added.data()), statement);
+        statements_.insert(statements_.end(), added.begin(), added.end());
+      }
   }
 
-  void ParameterFile::read_file(const std::string &path, std::vector<std::string> &open_files)
+  void ParameterFile::note_dropped(const std::string &path, const Statement &list) const
   {
-    const std::string whence =
-        open_files.empty() ? "" : "Included by \"" + open_files.back() + "\": ";
-    std::string text = open_files.empty() ? text_ : contents_of(path, whence);
-    if (text.compare(0, 3, "\xEF\xBB\xBF") == 0) // byte order mark of some editors
-      text.erase(0, 3);
-    open_files.push_back(path);
-
-    std::vector<Statement> open_sections;
-    std::istringstream     in(text);
-    std::string            line, whole;
-    unsigned int           number = 0, first_number = 0;
-    while (std::getline(in, line))
-      {
-        ++number;
-        line = trimmed(line);
-        if (whole.empty())
-          first_number = number;
-        if (!line.empty() && line.back() == '\\' && in.peek() != std::istream::traits_type::eof())
-          {
-            whole += line.substr(0, line.size() - 1);
-            continue;
-          }
-        whole += line.empty() || line.back() != '\\' ? line : line.substr(0, line.size() - 1);
-        read_line(trimmed(whole.substr(0, whole.find('#'))), path,
-                  path + ":" + std::to_string(first_number), open_sections, open_files);
-        whole.clear();
-      }
-    if (!open_sections.empty())
-      throw InputError(
-          open_sections.back().origin + ": Section \"" + open_sections.back().name +
-          "\" is opened here and never closed. Add a line \"end\" behind its last entry.");
-    open_files.pop_back();
-  }
-
-  void ParameterFile::read_line(const std::string        &line,
-                                const std::string        &path,
-                                const std::string        &origin,
-                                std::vector<Statement>   &open_sections,
-                                std::vector<std::string> &open_files)
-  {
-    std::string rest;
-    if (line.empty())
-      return;
-    if (take_keyword(line, "subsection", rest))
-      {
-        if (rest.empty())
-          throw InputError(origin + ": \"subsection\" without a name. Write \"subsection NAME\".");
-        statements_.push_back({ Keyword::subsection, rest, "", origin });
-        open_sections.push_back(statements_.back());
-      }
-    else if (take_keyword(line, "end", rest))
-      {
-        if (!rest.empty())
-          throw InputError(origin + ": Text behind \"end\": \"" + rest +
-                           "\". Let \"end\" stand alone in its line.");
-        if (open_sections.empty())
-          throw InputError(origin + ": \"end\" without an open section. Take it out, or find the "
-                                    "\"subsection\" line that is missing above.");
-        open_sections.pop_back();
-        statements_.push_back({ Keyword::end, "", "", origin });
-      }
-    else if (take_keyword(line, "set", rest))
-      {
-        const std::size_t equals = rest.find('=');
-        const std::string name   = trimmed(rest.substr(0, equals));
-        if (equals == std::string::npos || name.empty())
-          throw InputError(origin + ": Cannot read \"" + line + "\". Write \"set NAME = VALUE\".");
-        statements_.push_back({ Keyword::set, name, trimmed(rest.substr(equals + 1)), origin });
-      }
-    else if (take_keyword(line, "include", rest))
-      {
-        if (rest.size() > 1 && rest.front() == '"' && rest.back() == '"')
-          rest = rest.substr(1, rest.size() - 2);
-        if (rest.empty())
-          throw InputError(origin +
-                           ": \"include\" without the name of a file. Write \"include FILE\", "
-                           "relative to the folder of this file.");
-        namespace fs            = std::filesystem;
-        const fs::path included = fs::path(path).parent_path() / rest;
-        for (const std::string &open : open_files)
-          if (fs::weakly_canonical(open) == fs::weakly_canonical(included))
-            throw InputError(origin + ": The file \"" + included.string() +
-                             "\" includes itself, directly or through others. Take out one of the "
-                             "\"include\" lines.");
-        read_file(included.string(), open_files);
-      }
-    else
-      throw InputError(
-          origin + ": Cannot read \"" + line +
-          "\". A line is \"subsection NAME\", \"set NAME = VALUE\", \"end\", \"include "
-          "FILE\" or a comment that begins with #.");
-  }
-
-  void ParameterFile::add_override(const std::string &text)
-  {
-    const std::string origin = "--set \"" + text + "\"";
-    const std::size_t equals = text.find('=');
-    if (equals == std::string::npos)
-      throw InputError(origin + ": No \"=\" in it. Write --set \"Section/Entry = value\".");
-    if (text.find_first_of("#\n") != std::string::npos)
-      throw InputError(origin + ": \"#\" and line breaks are not allowed in it. Write --set "
-                                "\"Section/Entry = value\".");
-
-    std::vector<std::string> names;
-    std::istringstream       parts(text.substr(0, equals) + "/");
-    std::string              part;
-    while (std::getline(parts, part, '/'))
-      names.push_back(trimmed(part));
-    for (const std::string &name : names)
-      if (name.empty())
-        throw InputError(origin + ": The name of a section or of the entry is empty. Write --set "
-                                  "\"Section/Entry = value\".");
-
-    for (std::size_t i = 0; i + 1 < names.size(); ++i)
-      statements_.push_back({ Keyword::subsection, names[i], "", origin });
-    statements_.push_back({ Keyword::set, names.back(), trimmed(text.substr(equals + 1)), origin });
-    for (std::size_t i = 0; i + 1 < names.size(); ++i)
-      statements_.push_back({ Keyword::end, "", "", origin });
+    const std::vector<std::string> paths = paths_of(statements_);
+    std::string                    before;
+    for (std::size_t i = 0; i < statements_.size(); ++i)
+      if (paths[i] == path)
+        before = value_after(statements_[i], before);
+    std::string dropped;
+    const auto  given = names_of_list(list.value);
+    for (const std::string &name : names_of_list(before))
+      if (std::find(given.begin(), given.end(), name) == given.end())
+        dropped += (dropped.empty() ? "" : ", ") + name;
+    if (!dropped.empty())
+      note(list.origin + " replaces the whole list \"" + before + "\": " + dropped +
+           " back at the default of the geometry file. To change one of them, write --set \"" +
+           path + "/NAME = value\".");
   }
 
   void ParameterFile::parse(ParameterHandler &prm, const bool skip_undefined) const
@@ -371,6 +315,11 @@ namespace axiforge
             {
               const Sections sections = open.names;
               open.leave_all();
+              if (const std::string way_out =
+                      sections.empty() ? way_out_of_family(prm, statements_, statement.name) : "";
+                  !way_out.empty())
+                throw InputError(statement.origin + ": Unknown section \"" + statement.name +
+                                 "\"." + way_out);
               throw_unknown(statement.origin, "section", sections, statement.name,
                             Declared(prm).sections);
             }
@@ -380,7 +329,9 @@ namespace axiforge
           const std::string entry = joined(open.names, statement.name);
           try
             {
-              prm.set(statement.name, statement.value);
+              prm.set(statement.name, statement.key.empty()
+                                          ? statement.value
+                                          : value_after(statement, prm.get(statement.name)));
             }
           catch (const ParameterHandler::ExcEntryUndeclared &)
             {
@@ -443,7 +394,7 @@ namespace axiforge
       else if (statement.keyword == Keyword::subsection && depth++ == 0 &&
                statement.name.compare(0, family.size() + 1, family + " ") == 0)
         {
-          const std::string member = trimmed(statement.name.substr(family.size()));
+          const std::string member = without_blanks(statement.name.substr(family.size()));
           if (std::find(members.begin(), members.end(), member) == members.end())
             members.push_back(member);
         }
@@ -467,7 +418,7 @@ namespace axiforge
             const Statement &statement = statements_[i];
             if (statement.keyword == Keyword::subsection && depth++ == 0 &&
                 statement.name.compare(0, family.size() + 1, family + " ") == 0)
-              open = trimmed(statement.name.substr(family.size()));
+              open = without_blanks(statement.name.substr(family.size()));
             else if (statement.keyword == Keyword::end && --depth == 0 && !open.empty())
               open.clear();
             else if (open.empty())
@@ -485,22 +436,52 @@ namespace axiforge
 
   std::string ParameterFile::resolved_text() const
   {
-    std::string text, indent;
-    for (const Statement &statement : statements_)
-      switch (statement.keyword)
+    const std::vector<std::string>     paths = paths_of(statements_);
+    std::map<std::string, std::string> last; // values by the full names
+    for (std::size_t i = 0; i < statements_.size(); ++i)
+      if (!paths[i].empty())
+        last[paths[i]] = value_after(statements_[i], last[paths[i]]);
+
+    std::string              text, indent;
+    std::vector<std::size_t> begins; // of the sections that are open, in the text
+    for (std::size_t i = 0; i < statements_.size(); ++i)
+      switch (statements_[i].keyword)
         {
         case Keyword::subsection:
-          text += indent + "subsection " + statement.name + "\n";
+          begins.push_back(text.size());
+          text += indent + "subsection " + statements_[i].name + "\n";
           indent += "  ";
           break;
         case Keyword::end:
           indent.erase(0, 2);
-          text += indent + "end\n";
+          // Of an override that changes an entry of the file nothing is left.
+          if (i >= n_of_file_ && text.find("set ", begins.back()) == std::string::npos)
+            text.erase(begins.back());
+          else
+            text += indent + "end\n";
+          begins.pop_back();
           break;
         case Keyword::set:
-          text += indent + "set " + statement.name + " = " + statement.value + "\n";
+          if (const auto value = last.find(paths[i]); value != last.end())
+            {
+              text += indent + "set " + statements_[i].name + " = " + value->second + "\n";
+              last.erase(value);
+            }
           break;
         }
     return text;
+  }
+
+  std::vector<std::string> ParameterFile::entries_of(const std::string &section) const
+  {
+    std::vector<std::string> names;
+    for (const std::string &path : paths_of(statements_))
+      if (path.compare(0, section.size() + 1, section + "/") == 0)
+        {
+          const std::string name = path.substr(section.size() + 1);
+          if (std::find(names.begin(), names.end(), name) == names.end())
+            names.push_back(name);
+        }
+    return names;
   }
 } // namespace axiforge

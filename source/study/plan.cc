@@ -5,6 +5,7 @@
 
 #include <axiforge/base/csv.h>
 #include <axiforge/base/errors.h>
+#include <axiforge/base/geometry_parameters.h>
 #include <axiforge/base/wording.h>
 #include <axiforge/study/plan.h>
 
@@ -197,26 +198,6 @@ namespace axiforge::study
                                 "Compare at one stroke only, or take the entry out");
     }
   } // namespace
-
-
-  std::string with_geometry_parameter(const std::string &list,
-                                      const std::string &name,
-                                      const std::string &value)
-  {
-    std::string result;
-    bool        found = false;
-    for (const std::string &part : split(list, ','))
-      {
-        if (part.empty())
-          continue;
-        const bool here = trim(std::string_view(part).substr(0, part.find('='))) == name;
-        found           = found || here;
-        result += (result.empty() ? "" : ", ") + (here ? name + " = " + value : part);
-      }
-    if (!found)
-      result += (result.empty() ? "" : ", ") + name + " = " + value;
-    return result;
-  }
 
 
   Plan make_plan(const scene::SceneParameters &scene)

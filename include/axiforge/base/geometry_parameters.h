@@ -26,4 +26,12 @@ namespace axiforge
     /// Declare the entries of a tool's profile in the subsection @p prm is in.
     void declare_profile(dealii::ParameterHandler &prm);
   };
+
+  /**
+   * A list of geometry parameters, "Radius = 25, RadialCells = 4", with one of them changed, or
+   * added if it isn't there.
+   */
+  std::string with_geometry_parameter(const std::string &list,
+                                      const std::string &name,
+                                      const std::string &value);
 } // namespace axiforge

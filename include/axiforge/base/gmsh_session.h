@@ -30,7 +30,9 @@ namespace axiforge
    * - With `General.AbortOnError` at the API's default of 2 an error in a `.geo` throws from inside
    *   the parser and leaves gmsh locked ("I'm busy!") for good. With 0 it goes on, and all errors
    * are found in its log.
-   * - `Exit;` in a `.geo` ends the whole process with status 0: such files are refused.
+   * - `Exit;` in a `.geo` ends the whole process with status 0, `SystemCall` runs a program: such
+   * files are refused.
+   * - Damaged files may crash it: they are first read in a process of their own.
    */
   class GmshSession
   {
@@ -61,15 +63,25 @@ namespace axiforge
 
     /**
      * Do @p action (calls of the gmsh API) and turn what gmsh throws or logs as an error into an
-     * InputError: `Entry "<entry>" = "<file>": gmsh failed while <what>: <its words>`.
+     * InputError: `Entry "<entry>" = "<file>": gmsh failed while <what>: <its words>`. Where no
+     * file was opened, it is a ComputationError without the entry.
      */
     void run(const std::string &what, const std::function<void()> &action) const;
+
+    /**
+     * Do @p action in a process of its own that ends with it: where gmsh crashes or ends the
+     * process, this one throws InputError instead. Its results and messages are lost.
+     */
+    void try_out(const std::string &what, const std::function<void()> &action) const;
 
     /// Tags of the model entities of a physical group. Empty if there is no such group.
     std::vector<int> entities_of_group(int dim, const std::string &name) const;
 
     /// Names of the physical groups of a dimension (a group without a name: its number).
     std::vector<std::string> group_names(int dim) const;
+
+    /// Whether the text of the loaded `.geo` has a word, outside of comments and quotes.
+    bool mentions(const std::string &word) const;
 
     /// Whether the loaded file brought a mesh and no geometry (`.msh`).
     bool holds_mesh() const;

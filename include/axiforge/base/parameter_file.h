@@ -6,6 +6,8 @@
 
 #include <deal.II/base/parameter_handler.h>
 
+#include <axiforge/base/parameter_statements.h>
+
 namespace axiforge
 {
   /**
@@ -18,7 +20,9 @@ namespace axiforge
    * it; keywords all lower or all upper case) and keeps file and line of every statement, so that a
    * mistake is told in one line: where it is, what is wrong, what is allowed.
    *
-   * Every `subsection` must be closed in the file that opens it. The last `set` of an entry counts.
+   * Every `subsection` must be closed in the file that opens it, and may be opened again. The last
+   * `set` of an entry counts; a file that gives an entry twice, with two values, is refused. A
+   * comment that ends in a backslash does not join the next line.
    */
   class ParameterFile
   {
@@ -28,12 +32,17 @@ namespace axiforge
      *
      * @param overrides as given to `--set`: "Section/Sub section/Entry = value"; a name cannot
      * contain
-     *   "/" or "=", a value cannot contain "#" or a line break.
+     *   "/" or "=", a value cannot contain "#" or a line break. One of the geometry parameters is
+     *   changed by "Section/Geometry parameters/NAME = value"; an override that replaces their list
+     *   and drops some that the file gave is noted.
      *
      * Throws InputError if a file cannot be read or includes itself, if a line is no statement, if
      * subsections are not balanced, or if an override is malformed.
      */
     explicit ParameterFile(const std::string &path, const std::vector<std::string> &overrides = {});
+
+    /// No file, overrides alone.
+    explicit ParameterFile(const std::vector<std::string> &overrides);
 
     /**
      * Sets the entries of @p prm, which is at its top level, in the order of the file, overrides
@@ -58,10 +67,14 @@ namespace axiforge
     const std::string &text() const;
 
     /**
-     * One file that says all: includes put in their places, overrides appended as sections.
-     * Comments are not kept.
+     * One file that says all: includes put in their places, each entry once with the value that
+     * counts, in the place where it was first given; entries of overrides alone are appended as
+     * sections. Comments are not kept.
      */
     std::string resolved_text() const;
+
+    /// The entries that the section @p section (joined by "/") is given, each once.
+    std::vector<std::string> entries_of(const std::string &section) const;
 
     /// Names of the sections at the top level that begin with the word @p family and a blank,
     /// without these, each once, in the order of the file: "upset" of "Operation upset".
@@ -76,28 +89,10 @@ namespace axiforge
     ParameterFile seen_by(const std::string &family, const std::string &member) const;
 
   private:
-    enum class Keyword
-    {
-      subsection,
-      end,
-      set
-    };
+    void add_overrides(const std::vector<std::string> &overrides);
 
-    struct Statement
-    {
-      Keyword     keyword;
-      std::string name;   ///< of the section or the entry; empty for `end`
-      std::string value;  ///< of the entry
-      std::string origin; ///< "file:line", or the override it comes from
-    };
-
-    void read_file(const std::string &path, std::vector<std::string> &open_files);
-    void read_line(const std::string        &line,
-                   const std::string        &path,
-                   const std::string        &origin,
-                   std::vector<Statement>   &open_sections,
-                   std::vector<std::string> &open_files);
-    void add_override(const std::string &text);
+    /// Notes which names of the list so far an override of the whole list does not have.
+    void note_dropped(const std::string &path, const Statement &list) const;
 
     std::string            path_;
     std::string            text_;

@@ -52,12 +52,4 @@ namespace axiforge::study
   void choose_quantities(const scene::SceneParameters   &scene,
                          const std::vector<std::string> &columns,
                          Plan                           &plan);
-
-  /**
-   * A list of geometry parameters, "Radius = 25, RadialCells = 4", with one of them changed, or
-   * added if it isn't there.
-   */
-  std::string with_geometry_parameter(const std::string &list,
-                                      const std::string &name,
-                                      const std::string &value);
 } // namespace axiforge::study

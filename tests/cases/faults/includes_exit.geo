@@ -1,0 +1,1 @@
+Include "exit.geo";

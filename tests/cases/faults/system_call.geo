@@ -1,0 +1,3 @@
+// SystemCall in a comment is none
+SystemCall "touch called";
+Merge "rectangle.geo";
