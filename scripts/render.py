@@ -7,7 +7,7 @@
     scripts/render.py RESULTS --contact    the field and the traction along the tools below it
     scripts/render.py RESULTS --history    the forces alone
 
-RESULTS is the folder of a run. --symmetry draws the part below the symmetry plane z = 0 as well. The
+RESULTS is the folder of a run, or of one operation of a chain. --symmetry draws the part below the symmetry plane z = 0 as well. The
 colours span the middle 99 % of the values unless --range says otherwise. Needs matplotlib and numpy
 (Debian: python3-matplotlib); the program itself does not.
 """
@@ -34,6 +34,20 @@ except ImportError:
 
 LABELS = {"strain": "effective strain", "strain_rate": "effective strain rate [1/s]", "velocity": "speed [mm/s]"}
 TYPES = {"Float32": "<f4", "Float64": "<f8", "Int32": "<i4", "Int64": "<i8", "UInt8": "<u1"}
+
+
+def check_folder(folder):
+    """A folder of results; that of a chain has them in the folders of its operations."""
+    if not folder.is_dir():
+        sys.exit(f"{folder}: there is no such folder")
+    if (folder / "history.csv").exists():
+        return
+    operations = [f.name for f in folder.glob("[0-9]*_*") if (f / "history.csv").exists()]
+    if operations:
+        operations.sort(key=lambda name: int(name.split("_")[0]))
+        sys.exit(f"{folder}: these are the results of a chain; name one of its operations: "
+                 + ", ".join(str(folder / name) for name in operations))
+    sys.exit(f"{folder}: no results of a run (there is no history.csv)")
 
 
 def read_array(element):
@@ -231,6 +245,7 @@ def main():
     what.add_argument("--history", action="store_true", help="forces against the stroke alone")
     parser.add_argument("--output", type=pathlib.Path)
     arguments = parser.parse_args()
+    check_folder(arguments.results)
     output = arguments.output or arguments.results / ("history.png" if arguments.history else "fields.png")
 
     plt.rcParams.update({"font.size": 9, "axes.linewidth": 0.8})

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <iostream>
+#include <new>
 
 #include <CLI/CLI.hpp>
 #include <axiforge_revision.h>
@@ -57,7 +58,6 @@ int main(int argc, char **argv)
   for (int i = 0; i < argc; ++i)
     options.command_line += (i ? " " : "") + std::string(argv[i]);
 
-  axiforge::expect_single_process();
   CLI::App  app("axiforge: axisymmetric forging by the viscoplastic flow formulation");
   CLI::App *study = app.add_subcommand(
       "study", "Repeat a scene for the values of its section Study and compare the results");
@@ -89,14 +89,14 @@ int main(int argc, char **argv)
     {
       if (error.get_exit_code() == 0) // --help or --version
         return app.exit(error);
-      dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+      const auto mpi = axiforge::start_mpi(argc, argv);
       return report(std::string(error.what()) + ". axiforge --help tells what there is.",
                     bad_input);
     }
 
   options.resume = resume->count() > 0;
   axiforge::use_suitable_blas();
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  const auto mpi = axiforge::start_mpi(argc, argv);
   axiforge::use_one_thread();
   if (options.timing)
     axiforge::Phase::measure_phases();
@@ -116,6 +116,16 @@ int main(int argc, char **argv)
   catch (const axiforge::ComputationError &error)
     {
       return report(error.what(), can_not_go_on);
+    }
+  catch (const std::bad_alloc &)
+    {
+      std::cerr << "axiforge: The memory of the machine is used up. Take fewer cells, or a machine "
+                   "with more memory."
+                << std::endl;
+      // The other ranks wait for what this one will not send.
+      if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+        MPI_Abort(MPI_COMM_WORLD, can_not_go_on);
+      return can_not_go_on;
     }
   catch (const std::exception &error)
     {

@@ -19,6 +19,7 @@
 #include <axiforge/base/forked.h>
 #include <axiforge/base/geometry_parameters.h>
 #include <axiforge/base/gmsh_session.h>
+#include <axiforge/base/input_files.h>
 
 using namespace axiforge;
 
@@ -131,6 +132,60 @@ TEST_F(Input, FaultyCsv)
   fault("# nothing\n", { "0 row" });
   expect_fault([&]() { read_csv(folder + "/none.csv", "Tool/Table"); },
                { "Tool/Table", "none.csv" });
+}
+
+// Copies keep their places, whatever they are called, and a `.geo` finds what it includes.
+TEST_F(Input, FilesOfAScene)
+{
+  namespace fs = std::filesystem;
+  for (const char *sub : { "/scene/parts", "/library" })
+    fs::create_directories(folder + sub);
+  file("library/part.geo", "// of all\n");
+  file("scene/parts/part.geo", "Point(1) = {0, 0, 0};\n");
+  file("scene/billet.geo", "/* Include \"none.geo\"; */ // Merge \"none.geo\";\n"
+                           "Include \"parts/part.geo\"; Name = \"Include\";\nMerge \"" +
+                               folder + "/library/part.geo\";\nInclude \"missing.geo\";\n");
+  file("library/billet.csv", "0, 1\n");
+  const auto scene = [&](const std::string &table) {
+    return "subsection Workpiece\n  set Geometry file    = billet.geo # default: x\nend\n"
+           "subsection Material\n  set Table file = " +
+           table + "\n  set Other = billet.geo\nend\n";
+  };
+  const std::string relative = scene("../library/billet.csv");
+  const InputFiles  files(relative, folder + "/scene");
+  EXPECT_EQ(
+      files.with_copies(relative, "input"),
+      "subsection Workpiece\n  set Geometry file    = input/scene/billet.geo # default: x\nend\n"
+      "subsection Material\n  set Table file = input/library/billet.csv\n"
+      "  set Other = billet.geo\nend\n");
+  EXPECT_TRUE(files.has(folder + "/library/part.geo"));
+  EXPECT_FALSE(files.has(folder + "/library/none.geo"));
+
+  files.write(folder + "/results/input");
+  for (const char *copy :
+       { "scene/billet.geo", "scene/parts/part.geo", "library/part.geo", "library/billet.csv" })
+    EXPECT_TRUE(fs::exists(folder + "/results/input/" + copy)) << copy;
+
+  // The copies are the same scene, and they stay when they are kept where they lie.
+  const InputFiles copies(files.with_copies(relative, "input"), folder + "/results");
+  EXPECT_FALSE(copies.has(folder + "/library/part.geo"));
+  copies.write(folder + "/results/input");
+  const auto before = fingerprints_in(files.fingerprints()),
+             after  = fingerprints_in(copies.fingerprints());
+  ASSERT_EQ(before.size(), 2u);
+  ASSERT_EQ(after.size(), 2u);
+  for (unsigned int i = 0; i < 2; ++i)
+    {
+      EXPECT_EQ(before[i].entry, i == 0 ? "Workpiece/Geometry file" : "Material/Table file");
+      EXPECT_EQ(before[i].checksum, after[i].checksum);
+    }
+
+  // An included file counts, and an absolute name is as good as a relative one.
+  file("library/part.geo", "// of some\n");
+  const auto changed = fingerprints_in(
+      InputFiles(scene(folder + "/library/billet.csv"), folder + "/scene").fingerprints());
+  EXPECT_NE(before[0].checksum, changed[0].checksum);
+  EXPECT_EQ(before[1].checksum, changed[1].checksum);
 }
 
 TEST_F(Input, GeometryValues)

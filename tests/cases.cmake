@@ -42,6 +42,7 @@ if(TARGET axiforge)
     set_tests_properties(case_${name} PROPERTIES
       LABELS "case;${labels}" TIMEOUT ${timeout} PROCESSORS ${ranks}
       ENVIRONMENT "AXIFORGE_MPIRUN=${MPIEXEC_EXECUTABLE}")
+    axiforge_own_temporary_folder(case_${name})
   endforeach()
 
   # The program takes half a second to start: a few ctest cases for all faults, not one for each.
@@ -58,6 +59,7 @@ if(TARGET axiforge)
           ${part} ${n_parts})
       set_tests_properties(faults_${number} PROPERTIES LABELS "case;quick" TIMEOUT 300
         ENVIRONMENT "AXIFORGE_MPIRUN=${MPIEXEC_EXECUTABLE}")
+      axiforge_own_temporary_folder(faults_${number})
     endforeach()
   endif()
 endif()

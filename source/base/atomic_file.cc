@@ -82,6 +82,18 @@ namespace axiforge
     temporary_path =
         (target.parent_path() / fmt::format(".{}.{}.tmp", target.filename().string(), ::getpid()))
             .string();
+    const std::string folder = target.parent_path().string();
+    descriptor =
+        ::open(folder.empty() ? "." : folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
+    if (descriptor >= 0)
+      {
+        out.open(fmt::format("/proc/self/fd/{}", descriptor), std::ios::binary);
+        if (out)
+          return;
+        ::close(descriptor);
+        descriptor = -1;
+        out.clear();
+      }
     errno = 0;
     out.open(temporary_path, std::ios::binary | std::ios::trunc);
     if (!out)
@@ -90,11 +102,29 @@ namespace axiforge
 
   AtomicFile::~AtomicFile()
   {
+    out.close();
     if (!committed)
-      {
-        out.close();
-        std::remove(temporary_path.c_str());
-      }
+      std::remove(temporary_path.c_str());
+    if (descriptor >= 0)
+      ::close(descriptor);
+  }
+
+  /// Gives the written file its temporary name, from which it can be renamed over another one.
+  bool AtomicFile::get_name()
+  {
+    if (descriptor < 0)
+      return flush_to_disk(temporary_path, O_RDONLY);
+    if (::fsync(descriptor) != 0)
+      return false;
+    ::unlink(temporary_path.c_str()); // of a process of that number which was killed just here
+    const std::string nameless = fmt::format("/proc/self/fd/{}", descriptor);
+    if (::linkat(AT_FDCWD, nameless.c_str(), AT_FDCWD, temporary_path.c_str(), AT_SYMLINK_FOLLOW) ==
+        0)
+      return true;
+    std::error_code error; // a file system that can't do this
+    std::filesystem::copy_file(nameless, temporary_path, error);
+    errno = error.value();
+    return !error && flush_to_disk(temporary_path, O_RDONLY);
   }
 
   std::ostream &AtomicFile::stream()
@@ -110,8 +140,7 @@ namespace axiforge
     if (!out)
       throw_cannot_write(path);
     out.close();
-    if (!out || !flush_to_disk(temporary_path, O_RDONLY) ||
-        std::rename(temporary_path.c_str(), path.c_str()) != 0)
+    if (!out || !get_name() || std::rename(temporary_path.c_str(), path.c_str()) != 0)
       throw_cannot_write(path);
     committed = true;
 

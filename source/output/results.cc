@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <set>
+#include <iostream>
 #include <sstream>
 
 #include <deal.II/base/data_out_base.h>
@@ -14,36 +15,15 @@
 
 namespace axiforge::output
 {
-  void make_folder(const std::string &folder)
-  {
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error)
-      throw InputError::entry("Output/Directory", folder,
-                              "the folder can't be made (" + error.message() + ")",
-                              "a folder that you may write to", "Choose another with --output");
-  }
-
-
-  void remove_results(const std::string &folder)
-  {
-    std::error_code ignored;
-    if (std::filesystem::is_directory(folder + "/fields", ignored))
-      for (const auto &entry : std::filesystem::directory_iterator(folder + "/fields"))
-        if (entry.path().extension() == ".vtu" || entry.path().extension() == ".part")
-          std::filesystem::remove(entry.path(), ignored);
-    for (const char *name : { "fields.pvd", "tools.pvd", "history.csv", "checkpoint.axi",
-                              "checkpoint.old.axi", "chain.csv", "chain.md" })
-      std::filesystem::remove(folder + "/" + name, ignored);
-  }
-
-
   static void write_collections(const std::string &folder, const ResultsProgress &done)
   {
     std::ostringstream fields, tools;
-    dealii::DataOutBase::write_pvd_record(fields, done.field_files);
-    write_file_atomically(folder + "/fields.pvd", fields.str());
-    if (!done.tool_files.empty())
+    if (!done.field_files.empty() || std::filesystem::exists(folder + "/fields.pvd"))
+      {
+        dealii::DataOutBase::write_pvd_record(fields, done.field_files);
+        write_file_atomically(folder + "/fields.pvd", fields.str());
+      }
+    if (!done.tool_files.empty() || std::filesystem::exists(folder + "/tools.pvd"))
       {
         dealii::DataOutBase::write_pvd_record(tools, done.tool_files);
         write_file_atomically(folder + "/tools.pvd", tools.str());
@@ -75,10 +55,11 @@ namespace axiforge::output
 
   void Results::start_folder(const Provenance &provenance)
   {
+    check_folder(folder, provenance);
     remove_results(folder); // what an earlier run has left here would mix with ours
-    write_file_atomically(folder + "/input.prm", provenance.input);
-    write_file_atomically(folder + "/parameters.prm", provenance.parameters);
-    write_file_atomically(folder + "/versions.txt", provenance.versions);
+    write_provenance(folder, provenance);
+    if (provenance.folder_of_files == "input")
+      provenance.files.write(folder + "/input");
     history.emplace(CsvFile::create(folder + "/history.csv", history_columns(scene)));
   }
 
@@ -87,24 +68,34 @@ namespace axiforge::output
   {
     history.emplace(CsvFile::resume(folder + "/history.csv", history_columns(scene), done.n_rows));
 
-    std::set<std::string> kept;
-    for (const auto *list : { &done.field_files, &done.tool_files })
-      for (const auto &file : *list)
-        kept.insert(std::filesystem::path(file.second).filename().string());
-    if (!kept.empty())
-      write_collections(folder, done);
-    std::error_code ignored;
-    for (const auto &entry : std::filesystem::directory_iterator(folder + "/fields"))
-      if (entry.path().extension() == ".vtu" && !kept.count(entry.path().filename().string()))
-        std::filesystem::remove(entry.path(), ignored);
+    std::vector<std::string> kept;
+    std::size_t              n_missing = 0;
+    for (auto *list : { &done.field_files, &done.tool_files })
+      {
+        const auto missing = std::remove_if(list->begin(), list->end(), [&](const auto &file) {
+          return !std::filesystem::exists(folder + "/" + file.second);
+        });
+        n_missing += list->end() - missing;
+        list->erase(missing, list->end());
+        for (const auto &file : *list)
+          kept.push_back(std::filesystem::path(file.second).filename().string());
+      }
+    if (n_missing > 0)
+      std::cerr << fmt::format(
+          "Note: {} files of the fields that the run had written are no longer "
+          "in \"{}/fields\": they are taken out of its lists.\n",
+          n_missing, folder);
+    write_collections(folder, done);
+    remove_fields(folder, kept);
 
     std::ostringstream before;
     before << std::ifstream(folder + "/versions.txt").rdbuf();
-    write_file_atomically(folder + "/input.prm", provenance.input);
-    write_file_atomically(folder + "/parameters.prm", provenance.parameters);
-    write_file_atomically(folder + "/versions.txt",
-                          before.str() + fmt::format("\nresumed after step {}:\n", state.step) +
-                              provenance.versions);
+    Provenance whole = provenance;
+    whole.versions =
+        before.str() + fmt::format("\nresumed after step {}:\n", state.step) + provenance.versions;
+    write_provenance(folder, whole);
+    if (provenance.folder_of_files == "input")
+      provenance.files.write(folder + "/input");
   }
 
 

@@ -3,13 +3,14 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include <deal.II/base/mpi.h>
 
 #include <axiforge/base/collective.h>
-#include <axiforge/base/csv.h>
 #include <axiforge/base/errors.h>
+#include <axiforge/base/input_files.h>
 #include <axiforge/base/phases.h>
 #include <axiforge/process/checkpointing.h>
 
@@ -31,55 +32,51 @@ namespace axiforge::process
     }
 
 
-    constexpr int    signals[3] = { SIGUSR1, SIGTERM, SIGINT };
-    struct sigaction before[3];
+    struct CaughtSignal
+    {
+      int              number;
+      const char      *name;
+      struct sigaction before;
+    };
+    CaughtSignal caught[] = { { SIGUSR1, "", {} },
+                              { SIGTERM, "SIGTERM", {} },
+                              { SIGINT, "SIGINT", {} },
+                              { SIGHUP, "SIGHUP: its terminal was closed", {} },
+                              { SIGPIPE, "SIGPIPE: nobody reads its output any more", {} } };
 
     void set_handlers()
     {
       write_wanted = stop_wanted = 0;
-      for (unsigned int i = 0; i < 3; ++i)
+      for (CaughtSignal &signal : caught)
         {
           struct sigaction action = {};
-          action.sa_handler       = i == 0 ? on_request : on_stop;
-          action.sa_flags         = i == 0 ? SA_RESTART : SA_RESTART | SA_RESETHAND;
-          sigaction(signals[i], &action, &before[i]);
-          if (before[i].sa_handler == SIG_IGN) // as a script's background jobs do with Ctrl-C
-            sigaction(signals[i], &before[i], nullptr);
+          action.sa_handler       = signal.number == SIGUSR1 ? on_request : on_stop;
+          action.sa_flags         = SA_RESTART;
+          // The second one ends the program at once; but a broken pipe is met with every line.
+          if (signal.number != SIGUSR1 && signal.number != SIGPIPE)
+            action.sa_flags |= SA_RESETHAND;
+          sigaction(signal.number, &action, &signal.before);
+          // As nohup does with SIGHUP, and a script's background jobs with Ctrl-C.
+          if (signal.before.sa_handler == SIG_IGN)
+            sigaction(signal.number, &signal.before, nullptr);
         }
     }
 
 
     void reset_handlers()
     {
-      for (unsigned int i = 0; i < 3; ++i)
-        sigaction(signals[i], &before[i], nullptr);
+      for (const CaughtSignal &signal : caught)
+        sigaction(signal.number, &signal.before, nullptr);
     }
 
 
-    /// Entries of a .prm as the program prints it, "Section/Entry".
-    std::map<std::string, std::string> entries_of(const std::string &text)
+    /// "(SIGTERM)", of the signal that asked to stop.
+    std::string name_of(const int number)
     {
-      std::map<std::string, std::string> entries;
-      std::vector<std::string>           sections;
-      std::istringstream                 in(text);
-      for (std::string line; std::getline(in, line);)
-        {
-          const std::string statement(trim(line.substr(0, line.find('#'))));
-          if (statement == "end" && !sections.empty())
-            sections.pop_back();
-          else if (statement.compare(0, 11, "subsection ") == 0)
-            sections.push_back(statement.substr(11));
-          else if (const std::size_t equals = statement.find('=');
-                   statement.compare(0, 4, "set ") == 0 && equals != std::string::npos)
-            {
-              std::string path;
-              for (const std::string &section : sections)
-                path += section + "/";
-              entries[path + std::string(trim(statement.substr(4, equals - 4)))] =
-                  trim(statement.substr(equals + 1));
-            }
-        }
-      return entries;
+      for (const CaughtSignal &signal : caught)
+        if (signal.number == number)
+          return std::string(" (") + signal.name + ")";
+      return "";
     }
 
 
@@ -181,14 +178,14 @@ namespace axiforge::process
     if (write_wanted)
       wish = request;
     if (stop_wanted)
-      wish = stop;
+      wish = stop + stop_wanted;
     wish         = dealii::Utilities::MPI::max(wish, state.communicator);
     write_wanted = 0;
-    if (wish == stop)
+    if (wish > stop)
       throw ComputationError(fmt::format(
-          "The run was asked to stop by a signal and has done so at time {:.6g} s, stroke {:.6g} "
+          "The run was asked to stop by a signal{} and has done so at time {:.6g} s, stroke {:.6g} "
           "mm, after step {}.",
-          state.time, scene->stroke(state.time), state.step));
+          name_of(wish - stop), state.time, scene->stroke(state.time), state.step));
     if (wish != none)
       write(state, record);
     return wish == request;
@@ -226,8 +223,20 @@ namespace axiforge::process
       }
     catch (const std::exception &error)
       {
-        return std::string(" No checkpoint: ") + error.what();
+        std::error_code   ignored;
+        const std::string path = folder + "/checkpoint.axi";
+        return fmt::format(" There is no checkpoint of this state: {}{}", error.what(),
+                           std::filesystem::exists(path, ignored)
+                               ? " The one before it stays in \"" + path +
+                                     "\": --resume continues there."
+                               : "");
       }
+  }
+
+
+  bool stopped_by_signal(const MPI_Comm communicator)
+  {
+    return dealii::Utilities::MPI::max(static_cast<int>(stop_wanted), communicator) != 0;
   }
 
 
@@ -259,7 +268,31 @@ namespace axiforge::process
       return !may_differ(entry) &&
              (operation.empty() || std::find(begun.begin(), begun.end(), operation) != begun.end());
     };
-    const auto old_entries = entries_of(before), new_entries = entries_of(now);
+    // Files are compared by what is in them, wherever they lie.
+    std::set<std::string> same;
+    const auto            files = fingerprints_in(before);
+    for (const Fingerprint &is : fingerprints_in(now))
+      for (const Fingerprint &was : files)
+        if (was.entry == is.entry && matters(is.entry))
+          {
+            if (was.checksum != is.checksum)
+              throw InputError::entry(
+                  is.entry, is.path,
+                  fmt::format("what is in the file, or in one that it includes, has changed since "
+                              "the checkpoint \"{}\" was written with \"{}\"",
+                              path, was.path),
+                  "the file of then, which is kept in the folder input of the results",
+                  "Put it back, or start without --resume");
+            same.insert(is.entry);
+          }
+    const auto list = [](const std::string &text) {
+      const auto                         entries = entries_of_text(text);
+      std::map<std::string, std::string> found;
+      for (const auto &[entry, value] : entries)
+        found[entry] = value;
+      return found;
+    };
+    const auto old_entries = list(before), new_entries = list(now);
     const auto differs = [&](const std::string &entry, const std::string &was,
                              const std::string &is) {
       return InputError::entry(
@@ -274,7 +307,7 @@ namespace axiforge::process
           const auto found = new_entries.find(entry);
           if (found == new_entries.end())
             throw differs(entry, value, "(not there)");
-          if (found->second != value)
+          if (found->second != value && !same.count(entry))
             throw differs(entry, value, found->second);
         }
     for (const auto &[entry, value] : new_entries)

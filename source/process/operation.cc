@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <algorithm>
 #include <memory>
+#include <new>
 
 #include <axiforge/base/errors.h>
 #include <axiforge/base/features.h>
@@ -154,6 +155,24 @@ namespace axiforge::process
       summary.cells          = record.cells;
       summary.wall_seconds += record.times.total;
     }
+    /// The last good state and its fields. @return a sentence on how to continue
+    std::string keep_what_there_is(const State      &state,
+                                   const StepRecord &record,
+                                   output::Results  &results,
+                                   Checkpointing    &checkpoints)
+    {
+      const std::string advice = checkpoints.rescue(state, record);
+      try
+        {
+          results.write_fields(state); // what there is stays, up to the last good step
+          results.finish();
+        }
+      catch (const std::exception &)
+        {
+          // What went wrong first is what has to be told.
+        }
+      return advice;
+    }
   } // namespace
 
 
@@ -252,17 +271,21 @@ namespace axiforge::process
       }
     catch (const ComputationError &error)
       {
-        const std::string advice = checkpoints.rescue(state, record);
-        try
-          {
-            results.write_fields(state); // what there is stays, up to the last good step
-            results.finish();
-          }
-        catch (const ComputationError &)
-          {
-            // What went wrong first is what has to be told.
-          }
-        throw ComputationError(error.what() + advice);
+        throw ComputationError(error.what() +
+                               keep_what_there_is(state, record, results, checkpoints));
+      }
+    catch (const std::bad_alloc &)
+      {
+        // It may have met one rank of several, and nothing that all take part in can be done then.
+        if (dealii::Utilities::MPI::n_mpi_processes(state.communicator) > 1)
+          throw;
+        solver.reset(); // which has the most of it
+        throw ComputationError(
+            fmt::format(
+                "The memory of the machine is used up at time {:.6g} s, after step {}, with "
+                "{} cells. Take fewer cells, or a machine with more memory.",
+                state.time, state.step, state.tables.n_global_cells) +
+            keep_what_there_is(state, record, results, checkpoints));
       }
     check_formed(scene, state, largest_force);
     progress.end(state, sum, solver->linear_system().analyse_seconds, results.directory());

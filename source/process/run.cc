@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <filesystem>
+#include <fstream>
 #include <iostream>
+#include <memory>
 #include <optional>
+#include <sstream>
 
 #include <deal.II/base/revision.h>
 
@@ -11,6 +14,7 @@
 #include <axiforge/base/phases.h>
 #include <axiforge/base/wording.h>
 #include <axiforge/meshing/initial_state.h>
+#include <axiforge/output/folder.h>
 #include <axiforge/output/results.h>
 #include <axiforge/process/chain_summary.h>
 #include <axiforge/process/checkpointing.h>
@@ -166,20 +170,40 @@ namespace axiforge::process
     };
 
 
+    /// How the whole chain was made; those of the operations are beside their results.
+    void write_chain_provenance(const Chain       &chain,
+                                const std::string &resumed_in,
+                                const MPI_Comm     communicator)
+    {
+      on_first_rank(communicator, [&] {
+        output::Provenance provenance = chain.provenance;
+        if (!resumed_in.empty())
+          {
+            std::ostringstream before;
+            before << std::ifstream(chain.folder + "/versions.txt").rdbuf();
+            provenance.versions =
+                before.str() + "\nresumed in operation " + resumed_in + ":\n" + provenance.versions;
+          }
+        output::write_provenance(chain.folder, provenance);
+        chain.provenance.files.write(chain.folder + "/input");
+      });
+    }
+
+
     /// What an earlier run has left in the folders would mix with this one.
     void start_folders(const Chain &chain, const MPI_Comm communicator)
     {
       if (!chain.several())
         return;
       on_first_rank(communicator, [&] {
-        output::make_folder(chain.folder);
+        output::check_folder(chain.folder, chain.provenance);
+        for (unsigned int k = 0; k < chain.operations.size(); ++k)
+          output::check_folder(chain.folder_of(k), chain.provenance);
         output::remove_results(chain.folder);
         for (unsigned int k = 0; k < chain.operations.size(); ++k)
           output::remove_results(chain.folder_of(k));
-        write_file_atomically(chain.folder + "/input.prm", chain.provenance.input);
-        write_file_atomically(chain.folder + "/parameters.prm", chain.provenance.parameters);
-        write_file_atomically(chain.folder + "/versions.txt", chain.provenance.versions);
       });
+      write_chain_provenance(chain, "", communicator);
     }
 
 
@@ -192,6 +216,8 @@ namespace axiforge::process
     {
       output::Provenance own = chain.provenance;
       own.parameters         = chain.operations[k].print();
+      if (chain.several())
+        own.folder_of_files = "../input";
       if (chain.several() && !chain.quiet)
         std::cout << fmt::format("\nOperation {} of {}: {}\n", k + 1, chain.operations.size(),
                                  chain.operations[k].operation);
@@ -216,6 +242,8 @@ namespace axiforge::process
         {
           chain.progress = resumed->chain;
           first          = chain.progress.finished.size();
+          if (chain.several()) // operations to come may have got other files
+            write_chain_provenance(chain, chain.progress.present.name, state.communicator);
         }
       else
         start_folders(chain, state.communicator);
@@ -306,10 +334,22 @@ namespace axiforge::process
 
     const std::string               folder = results_folder(options, start);
     const std::string               all    = print_all(operations);
+    const InputFiles                files(all, file.directory());
+    const std::string               entries = all + files.fingerprints();
     State                           state(communicator);
     std::optional<CheckpointExtras> resumed;
+    // Held until the run has ended; a folder that is not there has no checkpoint either.
+    std::unique_ptr<output::FolderLock> lock;
+    const auto                          lock_folder = [&] {
+      on_first_rank(communicator, [&] { lock = std::make_unique<output::FolderLock>(folder); });
+    };
     if (options.resume)
-      resumed = resume(find_checkpoint(options.resume_from, folder), all, mesh, state);
+      {
+        const std::string checkpoint = find_checkpoint(options.resume_from, folder);
+        if (!options.validate && std::filesystem::exists(checkpoint))
+          lock_folder();
+        resumed = resume(checkpoint, entries, mesh, state);
+      }
     else
       meshing::make_initial_state(mesh, start.workpiece.refinement_levels, state);
     // All operations are checked before anything is written.
@@ -333,10 +373,11 @@ namespace axiforge::process
         return;
       }
     start_phase.reset();
-    Chain chain{ options, operations,
-                 folder,  { file.resolved_text(), all, versions(options, communicator) },
-                 quiet,   { folder, all },
-                 {} };
+    if (!options.resume)
+      lock_folder();
+    const output::Provenance provenance{ file.resolved_text(), all, versions(options, communicator),
+                                         files, output::files_of_scene(options.parameter_file) };
+    Chain chain{ options, operations, folder, provenance, quiet, { folder, entries }, {} };
     chain.progress.outline = ready.outline;
     run_chain(chain, state, std::move(resumed), std::move(ready.scene));
   }

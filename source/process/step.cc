@@ -259,12 +259,25 @@ namespace axiforge::process
             const Phase phase("geometry after the step");
             const Field before = state.position;
             state.move_nodes(result.velocity, time_step);
-            const Measures size   = measure(state);
-            const double   radius = scene.process.fill_radius;
-            const double   fill =
-                radius > 0 ? fill_fraction(scene, state, radius, state.time + time_step) : 0;
-            state.position = before;
-            state.position.update_ghost_values();
+            const auto take_back = [&] {
+              state.position = before;
+              state.position.update_ghost_values();
+            };
+            Measures size;
+            double   fill = 0;
+            try
+              {
+                size                = measure(state);
+                const double radius = scene.process.fill_radius;
+                if (radius > 0)
+                  fill = fill_fraction(scene, state, radius, state.time + time_step);
+              }
+            catch (...)
+              {
+                take_back();
+                throw;
+              }
+            take_back();
             if (size.smallest_jacobian > 0)
               {
                 StepRecord record = result.record;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <filesystem>
 #include <iostream>
+#include <memory>
 
 #include <deal.II/base/timer.h>
 
@@ -9,6 +10,7 @@
 #include <axiforge/base/errors.h>
 #include <axiforge/base/wording.h>
 #include <axiforge/meshing/initial_state.h>
+#include <axiforge/output/folder.h>
 #include <axiforge/output/results.h>
 #include <axiforge/study/report.h>
 #include <axiforge/study/study.h>
@@ -250,7 +252,10 @@ namespace axiforge::study
                                   ? std::filesystem::path(file.path()).stem().string()
                                   : parameters.title;
 
+    std::unique_ptr<output::FolderLock> lock;
+    on_first_rank(communicator, [&] { lock = std::make_unique<output::FolderLock>(folder); });
     unsigned int n_failed = 0;
+    bool         stopped  = false;
     for (const Variation &variation : study.plan.variations)
       {
         const unsigned int number = study.runs.size() + 1;
@@ -266,16 +271,15 @@ namespace axiforge::study
                                        ? fmt::format("{} steps in {:.1f} s", run.steps, run.wall)
                                        : "failed. " + run.failure)
                     << std::flush;
-        on_first_rank(communicator, [&] {
-          std::error_code error;
-          std::filesystem::create_directories(folder, error);
-          write_files(folder, title, study);
-        });
+        on_first_rank(communicator, [&] { write_files(folder, title, study); });
       }
     if (!quiet)
       std::cout << text_report(study.plan, study.runs, study.items) << "\nResults: " << folder
                 << "/study.csv, study.md, study.svg, run_1 ...\n"
                 << std::flush;
+    if (stopped)
+      throw ComputationError(fmt::format("The study ends with its run {}: {}", study.runs.size(),
+                                         study.runs.back().failure));
     if (n_failed == study.runs.size())
       throw ComputationError("None of the runs of the study has reached its end. The first: " +
                              study.runs.front().failure);

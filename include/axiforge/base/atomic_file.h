@@ -8,9 +8,10 @@
 namespace axiforge
 {
   /**
-   * A file that appears whole or not at all: it is written under a temporary name in the same
-   * folder and renamed by commit(). A run that is killed before leaves an older file of that name
-   * untouched, and at most a temporary one (`.NAME.PID.tmp`) behind.
+   * A file that appears whole or not at all: it is written without a name in the same folder, and
+   * gets one by commit(). A run that is killed before leaves an older file of that name untouched,
+   * and nothing behind; where the file system knows no files without a name (O_TMPFILE) at most a
+   * temporary one (`.NAME.PID.tmp`).
    *
    *     AtomicFile file("solution_0001.vtu");
    *     data_out.write_vtu(file.stream());
@@ -22,7 +23,7 @@ namespace axiforge
   class AtomicFile
   {
   public:
-    /// Opens the temporary file; the folder must exist.
+    /// Begins the file; the folder must exist.
     explicit AtomicFile(const std::string &path);
     AtomicFile(const AtomicFile &)            = delete;
     AtomicFile &operator=(const AtomicFile &) = delete;
@@ -36,8 +37,11 @@ namespace axiforge
     void commit();
 
   private:
+    bool get_name();
+
     std::string   path;
     std::string   temporary_path;
+    int           descriptor = -1; ///< of the file without a name, if there are such
     std::ofstream out;
     bool          committed = false;
   };

@@ -11,6 +11,7 @@
 
 #include <axiforge/base/atomic_file.h>
 #include <axiforge/base/background.h>
+#include <axiforge/output/folder.h>
 #include <axiforge/scene/scene.h>
 #include <axiforge/state/checkpoint.h>
 #include <axiforge/state/state.h>
@@ -18,19 +19,12 @@
 
 namespace axiforge::output
 {
-  /// What is kept beside the results so that they can be made again.
-  struct Provenance
-  {
-    std::string input;      ///< the .prm as given, included files and overrides in their places
-    std::string parameters; ///< all entries in effect
-    std::string versions;   ///< program, revision, libraries, command line
-  };
-
   /**
-   * Writes the folder of a run: `input.prm`, `parameters.prm`, `versions.txt`, `history.csv` (one
-   * row per accepted step), VTU files in `fields/` with `fields.pvd` and `tools.pvd`. Every file
-   * appears whole or not at all; a row of the history is written at once, the files of the fields
-   * beside the next steps if there is but one rank. All functions are collective.
+   * Writes the folder of a run: `input.prm`, `parameters.prm`, `versions.txt`, the files they name
+   * in `input/`, `history.csv` (one row per accepted step), VTU files in `fields/` with
+   * `fields.pvd` and `tools.pvd`. Every file appears whole or not at all; a row of the history is
+   * written at once, the files of the fields beside the next steps if there is but one rank. All
+   * functions are collective.
    */
   class Results
   {
@@ -75,13 +69,6 @@ namespace axiforge::output
     ResultsProgress        done;    ///< rows: first rank only
     Background             writer;
   };
-
-  /// Makes the folder if it is not there. First rank only. @throws InputError
-  void make_folder(const std::string &folder);
-
-  /// Takes away what a run writes to its folder, as far as it is there; no other files. First rank
-  /// only.
-  void remove_results(const std::string &folder);
 
   /// Column names of history.csv.
   std::vector<std::string> history_columns(const scene::Scene &scene);

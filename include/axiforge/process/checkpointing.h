@@ -14,9 +14,9 @@ namespace axiforge::process
 {
   /**
    * When a run writes its checkpoint: as the scene says, when it cannot go on, on SIGUSR1, and on
-   * SIGTERM and SIGINT, which end it after the present step. The signals are caught as long as the
-   * object is there; a second SIGTERM or SIGINT ends the program at once. A
-   * signal that is ignored at the start stays ignored.
+   * SIGTERM, SIGINT, SIGHUP and SIGPIPE, which end it after the present step. The signals are
+   * caught as long as the object is there; a second SIGTERM, SIGINT or SIGHUP ends the program at
+   * once. A signal that is ignored at the start stays ignored (nohup).
    *
    * The file is `checkpoint.axi` in the folder of the results; the one before it stays as
    * `checkpoint.old.axi`.
@@ -65,6 +65,9 @@ namespace axiforge::process
     std::string          last_kept; ///< what the last checkpoint is of, in words
   };
 
+  /// Whether a signal has asked the last run to stop, on any rank. Collective.
+  bool stopped_by_signal(MPI_Comm communicator);
+
   /**
    * Where --resume finds its checkpoint.
    * @param from as given: folder, file or empty
@@ -77,8 +80,8 @@ namespace axiforge::process
   /**
    * Checks that a checkpoint belongs to a scene: all entries are the same but for the end of the
    * run, time stepping, flow solver, outputs and checkpoints. Operations that have not begun may
-   * differ altogether.
-   * @param before, now texts of all entries in effect
+   * differ altogether. Files are the same if their contents are.
+   * @param before, now texts of all entries in effect, with the fingerprints of the files
    * @param begun names of the operations that have begun
    * @throws InputError that names the first entry that differs
    */

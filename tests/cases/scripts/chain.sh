@@ -148,4 +148,18 @@ for operation in 1_first 2_second 3_third; do
     -v only=stroke_mm,force_upper_N,force_lower_N,largest_radius_mm,largest_strain,height_mm
 done
 
+name=where_it_lies
+# The files are kept once, and found from the folders of the operations as well.
+[ ! -e straight/output/1_first/input ] || fail "the files are kept twice"
+run lies 0 "$PWD/straight/output/input.prm"
+for operation in 1_first 2_second 3_third; do
+  compare straight/output/$operation/history.csv lies/output/$operation/history.csv -v rel=0
+  run validated 0 "$PWD/lies/output/$operation/input.prm" --validate
+done
+if python3 -c 'import matplotlib, numpy, PIL' 2>/dev/null; then
+  got=0
+  python3 "$here/../../../scripts/render.py" lies/output >/dev/null 2>render_said || got=$?
+  [ "$got" -ne 0 ] && grep -qF '2_second' render_said || fail "the picture of a chain: $(cat render_said)"
+fi
+
 finish
