@@ -364,7 +364,7 @@ namespace axiforge::process
     check_later_operations(operations, meshing::outline_of(mesh));
     if (options.validate)
       {
-        if (first)
+        if (first && !quiet)
           std::cout << fmt::format("{} is sound: {} cells, {} unknowns, {}.\n", file.path(),
                                    state.tables.n_global_cells, state.n_unknowns(),
                                    start.operation.empty()
