@@ -19,7 +19,7 @@ namespace
   /// A tube in cells, each side with the name it is given; nothing: part of the free surface.
   std::string tube(const TemporaryFolder &folder, const std::array<std::string, 4> &names)
   {
-    std::string text = R"(
+    std::string            text     = R"(
 Point(1) = {10, 0, 0};
 Point(2) = {20, 0, 0};
 Point(3) = {20, 5, 0};
@@ -54,8 +54,8 @@ Physical Surface("workpiece") = {1};
   FlowProblem::MeshChange turned(const unsigned int quarters)
   {
     return [quarters](meshing::WorkpieceMesh &mesh) {
-      constexpr unsigned int vertex[4]  = { 1, 3, 0, 2 };
-      constexpr unsigned int node[9]    = { 1, 3, 0, 2, 6, 7, 5, 4, 8 };
+      constexpr unsigned int vertex[4] = { 1, 3, 0, 2 };
+      constexpr unsigned int node[9]   = { 1, 3, 0, 2, 6, 7, 5, 4, 8 };
       for (unsigned int turn = 0; turn < quarters; ++turn)
         for (unsigned int cell = 0; cell < mesh.cells.size(); ++cell)
           {
@@ -72,7 +72,8 @@ Physical Surface("workpiece") = {1};
 
   Entries pressed(const std::string &name, const std::string &pressure)
   {
-    return { "Boundary " + name + "/Type = pressure", "Boundary " + name + "/Pressure = " + pressure };
+    return { "Boundary " + name + "/Type = pressure",
+             "Boundary " + name + "/Pressure = " + pressure };
   }
 
 
@@ -85,7 +86,11 @@ Physical Surface("workpiece") = {1};
 
   /// Source strength c of v_r = c/r that a pressure difference drives in sigma = C rate^n [mm^2/s]:
   /// p = C/(sqrt3 n) (2 c/sqrt3)^n (a^-2n - b^-2n) (Hill 1950, chapter 5, for n -> 0).
-  double source(const double p, const double C, const double n, const double inner = a, const double outer = b)
+  double source(const double p,
+                const double C,
+                const double n,
+                const double inner = a,
+                const double outer = b)
   {
     const double of_one = C / (std::sqrt(3.) * n) * std::pow(2 / std::sqrt(3.), n) *
                           (std::pow(inner, -2 * n) - std::pow(outer, -2 * n));
@@ -120,11 +125,14 @@ TEST_P(Side, TubeAndBlockMoveAsTheyMust)
     names[side ^ 1] = "symmetry";
   constexpr double C = 100, n = 0.5, p = 30;
   TemporaryFolder  folder;
-  FlowProblem problem(at_start + power_law(C, n) + workpiece(tube(folder, names)) +
-                          Entries{ "Boundaries = " + sides[side] } + pressed(sides[side], number(p)),
-                      turned(quarters));
+  FlowProblem      problem(at_start + power_law(C, n) + workpiece(tube(folder, names)) +
+                               Entries{ "Boundaries = " + sides[side] } +
+                               pressed(sides[side], number(p)),
+                           turned(quarters));
   // left, right, bottom, top are bottom, top, right, left after a quarter
-  constexpr unsigned int local[4][4] = { { 0, 1, 2, 3 }, { 3, 2, 0, 1 }, { 1, 0, 3, 2 }, { 2, 3, 1, 0 } };
+  constexpr unsigned int local[4][4] = {
+    { 0, 1, 2, 3 }, { 3, 2, 0, 1 }, { 1, 0, 3, 2 }, { 2, 3, 1, 0 }
+  };
   for (const BoundaryEdge &edge : problem.state.tables.edges)
     if (edge.id == problem.state.boundary_ids.at(sides[side]))
       ASSERT_EQ(edge.side, local[quarters][side]) << "the mesh does not test what it should";
@@ -167,7 +175,7 @@ INSTANTIATE_TEST_SUITE_P(All,
 TEST(Pressure, FromAllSidesMovesNothing)
 {
   TemporaryFolder folder;
-  Entries         entries = at_start + power_law(100, 1) + Entries{ "Boundaries = inner, outer, top" } +
+  Entries entries = at_start + power_law(100, 1) + Entries{ "Boundaries = inner, outer, top" } +
                     workpiece(tube(folder, { { "inner", "outer", "symmetry", "top" } }));
   for (const std::string name : { "inner", "outer", "top" })
     entries = entries + pressed(name, "30");
@@ -189,10 +197,10 @@ TEST(Pressure, FromAllSidesMovesNothing)
 TEST(Pressure, ThatVariesAlongTheSurface)
 {
   TemporaryFolder folder;
-  FlowProblem problem(at_start + power_law(100, 1) + Entries{ "Boundaries = inner, top" } +
-                      workpiece(tube(folder, { { "inner", "", "symmetry", "top" } })) +
-                      pressed("inner", "z") + pressed("top", "r"));
-  const auto &record = problem.solve_at_start().record;
+  FlowProblem     problem(at_start + power_law(100, 1) + Entries{ "Boundaries = inner, top" } +
+                          workpiece(tube(folder, { { "inner", "", "symmetry", "top" } })) +
+                          pressed("inner", "z") + pressed("top", "r"));
+  const auto     &record = problem.solve_at_start().record;
   EXPECT_NEAR(record.boundaries[0].pressure, height / 2, 1e-9);
   EXPECT_NEAR(record.boundaries[0].force, 0, 1e-9);
   const double force = 2 * M_PI / 3 * (b * b * b - a * a * a);
@@ -219,9 +227,9 @@ Physical Surface("workpiece") = {1};
 Physical Curve("symmetry") = {1};
 Physical Curve("top") = {3};
 )");
-  FlowProblem problem(at_start + power_law(100, 1) + workpiece(block) +
-                      Entries{ "Boundaries = top" } + pressed("top", "50"));
-  const auto  record = problem.solve_at_start().record;
+  FlowProblem       problem(at_start + power_law(100, 1) + workpiece(block) +
+                            Entries{ "Boundaries = top" } + pressed("top", "50"));
+  const auto        record = problem.solve_at_start().record;
   EXPECT_NEAR(record.boundaries[0].force, -50 * M_PI * 100, 1e-6);
   EXPECT_NEAR(record.boundaries[0].power, 50 * M_PI * 100 * 0.5 * 12, 1e-3);
 }
@@ -239,7 +247,7 @@ TEST(Pressure, CountsAtTheTimeOfTheEquations)
     {
       FlowProblem problem((midpoint ? slow : at_start) + power_law(C, n) + workpiece(file) +
                           Entries{ "Boundaries = inner" } + pressed("inner", "20 + 15 * t^2"));
-      problem.state.time = start;
+      problem.state.time  = start;
       const auto   result = problem.solve_at_start(step);
       const double theta  = midpoint ? 0.5 : 0;
       // v_r = c/r in the shape at theta, where r = r0 + theta dt c/r
@@ -253,8 +261,8 @@ TEST(Pressure, CountsAtTheTimeOfTheEquations)
       for (unsigned int node = 0; node < problem.state.tables.n_nodes; ++node)
         if (problem.state.node_position(node)[0] < a + 1e-9)
           {
-          EXPECT_NEAR(result.velocity.local_element(2 * node) / (c / inner), 1, 5e-4)
-              << (midpoint ? "midpoint" : "explicit euler");
+            EXPECT_NEAR(result.velocity.local_element(2 * node) / (c / inner), 1, 5e-4)
+                << (midpoint ? "midpoint" : "explicit euler");
           }
       EXPECT_NEAR(result.record.boundaries[0].pressure, load(start + theta * step), 1e-9);
       expect_closed_ledger(result.record);

@@ -170,8 +170,7 @@ namespace axiforge::solvers
       }
     smooth_ends(state, area, n_touching, contacts, pressure);
     for (unsigned int b = 0; b < contacts.size(); ++b)
-      contacts[b].pressure =
-          pressure.local_element(2 * state.tables.boundary_nodes[b].node);
+      contacts[b].pressure = pressure.local_element(2 * state.tables.boundary_nodes[b].node);
     for (unsigned int b = 0; b < contacts.size(); ++b)
       if (const unsigned int n = state.tables.boundary_nodes[b].axis_neighbour;
           n != no_tool && contacts[b].active())

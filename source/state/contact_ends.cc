@@ -23,7 +23,7 @@ namespace axiforge
       for (unsigned int e = 0; e < state.tables.edges.size(); ++e)
         for (unsigned int a = 0; a < 2; ++a)
           {
-            auto &list = edges[state.tables.edges[e].boundary_nodes[a]];
+            auto &list                       = edges[state.tables.edges[e].boundary_nodes[a]];
             list[list[0] == no_tool ? 0 : 1] = e;
           }
       return edges;
@@ -31,16 +31,16 @@ namespace axiforge
   } // namespace
 
 
-  std::vector<ContactEnd> contact_ends(const scene::Scene                           &scene,
-                                       const State                                  &state,
-                                       const std::vector<NodeContact>               &contacts,
-                                       const double                                  time,
+  std::vector<ContactEnd> contact_ends(const scene::Scene                            &scene,
+                                       const State                                   &state,
+                                       const std::vector<NodeContact>                &contacts,
+                                       const double                                   time,
                                        const std::function<Point(unsigned int node)> &place)
   {
     std::vector<ContactEnd> ends;
     const MeshTables       &tables = state.tables;
     const auto              edges  = edges_of_nodes(state);
-    const auto              gap    = [&](const unsigned int tool, const Point &x, const double reach) {
+    const auto              gap = [&](const unsigned int tool, const Point &x, const double reach) {
       std::array<tools::Contact, 2> found;
       const Vector2                 shift = scene.tools[tool].motion.displacement(time);
       return scene.tools[tool].profile.find(x - shift, reach, found) > 0 ? found[0].gap : reach;
@@ -74,15 +74,14 @@ namespace axiforge
                 if (second != no_tool && tables.boundary_nodes[second].free_surface &&
                     !touches(contacts[second], tool))
                   {
-                    const Point  x0 = place(edge.nodes[last]), x1 = place(edge.nodes[next]),
-                                x2 = place(tables.boundary_nodes[second].node);
+                    const Point x0 = place(edge.nodes[last]), x1 = place(edge.nodes[next]),
+                                x2  = place(tables.boundary_nodes[second].node);
                     const double d1 = x0.distance(x1), d2 = d1 + x1.distance(x2);
                     const double g1 = std::max(gap(tool, x1, d2), 0.), g2 = gap(tool, x2, 2 * d2);
                     // q d1 - d2 over q - 1, times sqrt(g1): no division by a gap of 0
                     const double r1 = std::sqrt(g1), r2 = std::sqrt(std::max(g2, 0.));
                     if (r2 > r1)
-                      end.share =
-                          std::clamp((r2 * d1 - r1 * d2) / ((r2 - r1) * d1), 0., 1.);
+                      end.share = std::clamp((r2 * d1 - r1 * d2) / ((r2 - r1) * d1), 0., 1.);
                   }
                 ends.push_back(end);
               }

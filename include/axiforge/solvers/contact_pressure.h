@@ -15,8 +15,8 @@ namespace axiforge::solvers
    * contact really ends; over the touching edges alone its reaction would give a peak that is not
    * there. So a node has the area that all its edges turn towards the tool, those with free nodes,
    * too. Where the surface turns away at once, as at an edge of the workpiece, the last touching
-   * edge gets the straight line through the pressure of its inner node that bears the same. Nodes on
-   * the axis, whose area is zero, take their neighbour's. Collective.
+   * edge gets the straight line through the pressure of its inner node that bears the same. Nodes
+   * on the axis, whose area is zero, take their neighbour's. Collective.
    * @param position nodes where the reactions hold [mm]
    */
   void recover_contact_pressures(const State              &state,

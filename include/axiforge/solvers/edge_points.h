@@ -42,8 +42,7 @@ namespace axiforge::solvers
         point.x = Point(point.value(position, edge));
         // To the right of the sides right (+z) and bottom (+r) is outside.
         const double sign = edge.side == 1 || edge.side == 2 ? 1 : -1;
-        point.area =
-            sign * weight[q] * 2 * M_PI * point.x[0] * Vector2({ along[1], -along[0] });
+        point.area = sign * weight[q] * 2 * M_PI * point.x[0] * Vector2({ along[1], -along[0] });
       }
     return points;
   }
