@@ -46,7 +46,7 @@ namespace
 
   const std::vector<std::string> laws_of_slip = {
     "set Law = coulomb\n set Coefficient = 0.2",
-    "set Law = coulomb\n set Coefficient = 5",
+    "set Law = coulomb\n set Coefficient = 1",
     "set Law = shear\n set Factor = 0.3\n set Regularisation velocity = 0.1",
     "set Law = arctan\n set Factor = 0.8",
     "set Law = norton\n set Viscosity = 7\n set Exponent = 0.25",
@@ -91,7 +91,7 @@ TEST(Friction, ReachesItsLimit)
   const double pi = dealii::numbers::PI;
   // Coulomb: mu p while that is below k, then k.
   EXPECT_NEAR(friction(laws_of_slip[0]).evaluate(at(1e3)).traction, 0.2 * 50., 1e-9);
-  EXPECT_NEAR(friction(laws_of_slip[1]).evaluate(at(1e3)).traction, k, 1e-9);
+  EXPECT_NEAR(friction(laws_of_slip[1]).evaluate(at(1e3, 80.)).traction, k, 1e-9);
   EXPECT_EQ(friction(laws_of_slip[0]).evaluate(at(3., 0.)).traction, 0.);
   EXPECT_EQ(friction(laws_of_slip[0]).evaluate(at(3., -9.)).traction, 0.);
   EXPECT_NEAR(friction(laws_of_slip[0]).cap(1e9, 100.), k, 1e-12);
@@ -165,7 +165,8 @@ TEST(Friction, AutomaticValues)
   EXPECT_EQ(friction("set Law = shear\n set Factor = 0.1", 20.).regularisation_velocity(), 0.02);
   EXPECT_EQ(friction(laws_of_slip[2]).regularisation_velocity(), 0.1);
   EXPECT_EQ(friction("set Law = smm\n set Factor = 0.1", 0.).layer_thickness(), 0.5);
-  EXPECT_EQ(friction("set Law = smm\n set Layer thickness = 2").layer_thickness(), 2.);
+  EXPECT_EQ(friction("set Law = smm\n set Factor = 0\n set Layer thickness = 2").layer_thickness(),
+            2.);
   EXPECT_EQ(friction("set Law = sticking", 0., 0.).kind(), FrictionKind::sticking);
 }
 
@@ -174,13 +175,15 @@ TEST(Friction, SmmFactor)
   EXPECT_EQ(friction("set Law = smm\n set Factor = 0").beta(), 0.);
   EXPECT_DOUBLE_EQ(friction("set Law = smm\n set Factor = 0.5").beta(), 1.);
   EXPECT_NEAR(friction("set Law = smm\n set Factor = 0.9999").beta(), 9999., 1e-7);
-  EXPECT_FALSE(friction("set Law = smm").workpiece_viscosity());
-  EXPECT_TRUE(friction("set Law = smm\n set Layer viscosity = workpiece").workpiece_viscosity());
-  EXPECT_EQ(friction("set Law = smm").layer_element(), SmmElement::lagrange);
-  EXPECT_EQ(friction("set Law = smm\n set Layer element = serendipity").layer_element(),
-            SmmElement::serendipity);
+  EXPECT_FALSE(friction("set Law = smm\n set Factor = 0").workpiece_viscosity());
+  EXPECT_TRUE(friction("set Law = smm\n set Factor = 0\n set Layer viscosity = workpiece")
+                  .workpiece_viscosity());
+  EXPECT_EQ(friction("set Law = smm\n set Factor = 0").layer_element(), SmmElement::lagrange);
+  EXPECT_EQ(
+      friction("set Law = smm\n set Factor = 0\n set Layer element = serendipity").layer_element(),
+      SmmElement::serendipity);
   EXPECT_EQ(friction("set Law = smm\n set Factor = 0.25").factor(), 0.25);
-  EXPECT_ANY_THROW(friction("set Law = smm").evaluate(at(1.)));
+  EXPECT_ANY_THROW(friction("set Law = smm\n set Factor = 0").evaluate(at(1.)));
   EXPECT_ANY_THROW(friction("set Law = sticking").evaluate(at(1.)));
 }
 
@@ -197,12 +200,23 @@ TEST(FrictionErrors, NameTheEntryTheRangeAndTheWayOut)
     { "set Law = tangential forces\n set Factor = 2", "Factor", "0 to 1" },
     { "set Law = smm\n set Factor = 1", "Factor\" = \"1\"", "Law = sticking" },
     { "set Law = smm\n set Factor = -0.2", "Factor", "at least 0 and less than 1" },
-    { "set Law = smm\n set Layer thickness = -1", "Layer thickness", "0 or more" },
-    { "set Law = norton\n set Viscosity = -1", "Viscosity", "0 or more" },
-    { "set Law = norton\n set Exponent = 0", "Exponent", "Law = shear" },
-    { "set Law = norton\n set Exponent = 1.5", "Exponent", "more than 0, up to 1" },
-    { "set Law = shear\n set Regularisation velocity = -1", "Regularisation velocity",
+    { "set Law = coulomb\n set Coefficient = 12", "Coefficient\" = \"12\"", "12 % is 0.12" },
+    { "set Law = shear\n set Factor = 30", "Factor\" = \"30\"", "30 % is 0.3" },
+    // Left out, which is not 0.
+    { "set Law = coulomb", "Coefficient\" = \"\"", "needed here and not given" },
+    { "set Law = shear", "Factor\" = \"\"", "needed here and not given" },
+    { "set Law = arctan", "Factor", "needed here and not given" },
+    { "set Law = tangential forces", "Factor", "Law = none" },
+    { "set Law = smm", "Factor", "needed here and not given" },
+    { "set Law = norton\n set Exponent = 0.5", "Viscosity\" = \"\"", "needed here and not given" },
+    { "set Law = smm\n set Factor = 0.5\n set Layer thickness = -1", "Layer thickness",
       "0 or more" },
+    { "set Law = norton\n set Viscosity = -1", "Viscosity", "0 or more" },
+    { "set Law = norton\n set Viscosity = 1\n set Exponent = 0", "Exponent", "Law = shear" },
+    { "set Law = norton\n set Viscosity = 1\n set Exponent = 1.5", "Exponent",
+      "more than 0, up to 1" },
+    { "set Law = shear\n set Factor = 0\n set Regularisation velocity = -1",
+      "Regularisation velocity", "0 or more" },
     // Entries of another law.
     { "set Factor = 0.3", "Factor\" = \"0.3\"", "Law = none, which has no further entries" },
     { "set Law = sticking\n set Coefficient = 0.3", "Coefficient", "its default 0" },
@@ -218,8 +232,8 @@ TEST(FrictionErrors, NameTheEntryTheRangeAndTheWayOut)
       EXPECT_IN("Tool upper/Friction/" + fault.entry, text);
       EXPECT_IN(fault.says, text);
     }
-  EXPECT_IN("because no tool moves", message("set Law = shear", 0.));
-  EXPECT_IN("no length to choose it from", message("set Law = smm", 2., 0.));
+  EXPECT_IN("because no tool moves", message("set Law = shear\n set Factor = 0", 0.));
+  EXPECT_IN("no length to choose it from", message("set Law = smm\n set Factor = 0", 2., 0.));
 
   FrictionParameters parameters;
   parameters.law = "coulom";

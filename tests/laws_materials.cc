@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <axiforge/base/errors.h>
+#include <axiforge/base/notes.h>
 #include <axiforge/laws/material.h>
 
 using namespace axiforge;
@@ -200,26 +201,46 @@ TEST(MaterialErrors, NameTheEntryTheRangeAndTheWayOut)
       { "set Model = power law", "Strength coefficient", "is needed" },
       { "set Model = power law\n set Strength coefficient = 5\n set Rate exponent = 1.5",
         "Rate exponent\" = \"1.5\"", "0 to 1" },
-      { "set Model = power law\n set Strength coefficient = 5\n set Reference strain rate = 0",
+      { "set Model = power law\n set Strength coefficient = 5\n set Rate exponent = 0\n set "
+          "Reference "
+          "strain rate = 0",
         "Reference strain rate", "> 0" },
       { "set Model = perzyna", "Yield stress", "is needed" },
       { "set Model = perzyna\n set Yield stress = 5\n set Rate exponent = -0.1", "Rate exponent",
         "0 to 1" },
       { "set Model = hollomon", "Strength coefficient", "is needed" },
       { hollomon + "set Hardening exponent = 1", "Hardening exponent", "use ludwik or swift" },
-      { hollomon + "set Smallest strain = 0", "Smallest strain", "1e-12 to 0.1" },
+      { hollomon + "set Hardening exponent = 0\n set Smallest strain = 0", "Smallest strain",
+        "1e-12 to 0.1" },
       { "set Model = ludwik", "Yield stress", "is needed" },
       { "set Model = ludwik\n set Yield stress = 5\n set Strength coefficient = -1",
         "Strength coefficient", "0 or more" },
-      { "set Model = ludwik\n set Yield stress = 5\n set Hardening exponent = 2",
+      { "set Model = ludwik\n set Yield stress = 5\n set Strength coefficient = 0\n set Hardening "
+          "exponent = 2",
         "Hardening exponent", "0 to 1" },
-      { swift, "Prestrain", "use hollomon" },
+      { swift + "set Hardening exponent = 0", "Prestrain", "use hollomon" },
+      // Left out, which is not 0.
+      { hollomon, "Hardening exponent\" = \"\"", "needed here and not given" },
+      { swift, "Hardening exponent", "needed here and not given" },
+      { "set Model = ludwik\n set Yield stress = 5", "Strength coefficient\" = \"\"",
+        "needed here and not given" },
+      { "set Model = perzyna\n set Yield stress = 5", "Rate exponent\" = \"\"",
+        "needed here and not given" },
+      { "set Model = power law\n set Strength coefficient = 5", "Rate exponent",
+        "needed here and not given" },
+      { product + "set Rate sensitivity = power", "Rate exponent", "needed here and not given" },
+      { product + "set Rate sensitivity = cowper-symonds", "Rate exponent",
+        "needed here and not given" },
+      { product + "set Rate sensitivity = johnson-cook", "Rate coefficient",
+        "needed here and not given" },
       { swift + "set Hardening exponent = -1", "Hardening exponent", "0 to 1" },
       { voce, "Saturation stress", "the law hardens" },
       { voce + "set Saturation stress = 9", "Characteristic strain", "is needed" },
       { product + "set Rate sensitivity = johnson-cook\n set Rate coefficient = 0.6",
         "Rate coefficient", "0 to 0.5" },
-      { product + "set Rate sensitivity = power\n set Reference strain rate = -1",
+      { product +
+            "set Rate sensitivity = power\n set Rate exponent = 0\n set Reference strain rate = "
+              "-1",
         "Reference strain rate", "must be positive" },
       // Entries of another model.
       { hollomon + "set Yield stress = 100", "Yield stress\" = \"100\"",
@@ -405,6 +426,27 @@ TEST_F(TableFile, KeepsTheValueOfItsEdgeOutside)
   EXPECT_GT(m.flow_stress(3., 0.5).d_strain_rate, 0.);
 }
 
+TEST_F(TableFile, StrainsThatLookLikePerCentAreNoted)
+{
+  take_notes();
+  read("s,1\n0,100\n3,200\n");
+  EXPECT_TRUE(take_notes().empty());
+  read("s,1\n0,100\n10,150\n50,200\n");
+  const std::vector<std::string> notes = take_notes();
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_IN("ends at a strain of 50", notes[0]);
+}
+
+TEST_F(TableFile, TellsItsRanges)
+{
+  const Material m = read(example);
+  ASSERT_NE(m.table(), nullptr);
+  EXPECT_EQ(m.table()->last_strain(), 1.);
+  EXPECT_NEAR(m.table()->lowest_rate(), 0.01, 1e-15);
+  EXPECT_NEAR(m.table()->highest_rate(), 20., 1e-12);
+  EXPECT_EQ(material("set Yield stress = 5").table(), nullptr);
+}
+
 TEST_F(TableFile, OneRateIsEnough)
 {
   const Material m = read("0,1\n0,100\n0.5,200\n");
@@ -438,7 +480,14 @@ TEST_F(TableFile, FaultsNameFileAndLine)
     { "s,1,2\n0,5,6\n1,6,nan\n", "line 3", "\"nan\"" },
     { "s,1,2\n-0.1,5,6\n1,6,7\n", "line 2", "must not be negative" },
     { "s,1,2\n0,5,6\n\n0,6,7\n", "line 4", "strain 0 does not exceed" },
-    { "s,1,2\n0,5,6\n1,6,0\n", "line 3", "stress 0 in column 3 must be positive" }
+    { "s,1,2\n0,5,6\n1,6,0\n", "line 3", "stress 0 in column 3 must be positive" },
+    // Without a row of rates: the first strain would be taken for the corner.
+    { "0,80\n0.1,100\n1,150\n", "line 1", "like a row of stresses" },
+    { "0.01,80,85\n0.1,100,110\n1,150,160\n", "line 1", "\"strain, 1\"" },
+    { "strain,stress\n0,80\n0.1,100\n", "first row", "\"stress\" is not a strain rate" },
+    { "s,1,2\n0,2e8,2.1e8\n1,3e8,3.1e8\n", "stresses", "is 310 MPa then" },
+    { "strain [%],1,2\n0,5,6\n10,6,7\n", "first row", "Divide them by 100" },
+    { "s;1;2\n0,5;5;6\n1;6;7\n", "line 2", "The decimal sign is a point" }
   };
   for (const Fault &f : faults)
     {

@@ -204,8 +204,8 @@ TEST(Checkpoint, PhysicsMustBeTheSameAndTheEndNeedNot)
 {
   const auto print = [](const Entries &more) {
     TemporaryFolder folder;
-    return scene::SceneParameters(
-               ParameterFile(folder.file("a.prm", ""), cylinder({ "Law = smm" }) + more))
+    return scene::SceneParameters(ParameterFile(folder.file("a.prm", ""),
+                                                cylinder({ "Law = smm", "Factor = 0.3" }) + more))
         .print();
   };
   const std::string before = print({});

@@ -39,6 +39,15 @@ namespace axiforge::laws
                             way_out);
   }
 
+  OptionalNumber EntryCheck::needed(const std::string    &name,
+                                    const OptionalNumber &value,
+                                    const std::string    &way_out) const
+  {
+    if (value.given())
+      return value;
+    throw InputError::entry(path(name), "", "it is needed here and not given", "a number", way_out);
+  }
+
   double EntryCheck::below(const std::string &name,
                            double             value,
                            double             lower,

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 
+#include <algorithm>
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include <axiforge/base/csv.h>
 #include <axiforge/base/errors.h>
+#include <axiforge/base/notes.h>
 #include <axiforge/laws/flow_stress_table.h>
 
 namespace axiforge::laws
@@ -113,6 +117,54 @@ namespace axiforge::laws
     }
   } // namespace
 
+  namespace
+  {
+    /**
+     * A number in the corner is either no more than a label, or the first strain of a table whose
+     * row of rates is missing. It can be a strain if the next one exceeds it.
+     */
+    void check_corner(const Source &source, const CsvTable &csv, const std::string &line)
+    {
+      if (csv.header.empty() && csv.rows.size() > 1 && csv.rows[0][0] < csv.rows[1][0])
+        fail(source, line,
+             fmt::format("it begins with the number {}, like a row of stresses. If the table has "
+                         "no strain rates, put a row \"strain, 1\" before it; if these are the "
+                         "rates, write the word strain for that number",
+                         csv.rows[0][0]));
+    }
+
+    /// Strains in per cent by the words of the corner.
+    bool says_per_cent(const CsvTable &csv)
+    {
+      const std::string label = csv.header.empty() ? "" : csv.header[0];
+      return label.find('%') != std::string::npos || label.find("percent") != std::string::npos ||
+             label.find("per cent") != std::string::npos;
+    }
+
+    /// Stresses and strains that can't be MPa and true strains.
+    void check_units(const Source              &source,
+                     const CsvTable            &csv,
+                     const std::vector<double> &strains,
+                     const std::vector<double> &stresses)
+    {
+      constexpr double no_stress = 1e6; // MPa: five times the modulus of steel
+      constexpr double much      = 4.;  // compressed to 2 % of the height
+      const double     largest   = *std::max_element(stresses.begin(), stresses.end());
+      if (largest >= no_stress)
+        fail(source, "stresses",
+             fmt::format("{} MPa is no flow stress: it looks like Pa, and is {} MPa then", largest,
+                         largest / 1e6));
+      if (says_per_cent(csv))
+        fail(source, "first row",
+             fmt::format("\"{}\" says that the strains are in per cent. Divide them by 100",
+                         csv.header[0]));
+      if (strains.back() > much)
+        note(fmt::format("\"{}\" ends at a strain of {}. If that is in per cent, divide the "
+                         "strains by 100.",
+                         source.file, strains.back()));
+    }
+  } // namespace
+
   FlowStressTable::FlowStressTable(std::vector<double>        strains_,
                                    const std::vector<double> &rates,
                                    const std::vector<double> &stresses)
@@ -157,6 +209,7 @@ namespace axiforge::laws
     if (csv.columns() < 2)
       fail(source, first, "it must hold a label and then at least one strain rate [1/s]");
 
+    check_corner(source, csv, first);
     std::vector<double> rates;
     for (unsigned int j = 1; j < csv.columns(); ++j)
       {
@@ -198,6 +251,7 @@ namespace axiforge::laws
            fmt::format("the table has {} row of stresses, but it needs at least 2 (give the same "
                        "stresses at two strains for a material that does not harden)",
                        strains.size()));
+    check_units(source, csv, strains, stresses);
     return FlowStressTable(strains, rates, stresses);
   }
 
@@ -273,5 +327,20 @@ namespace axiforge::laws
       if (values[k] != values[k % strains.size()])
         return true;
     return false;
+  }
+
+  double FlowStressTable::last_strain() const
+  {
+    return strains.back();
+  }
+
+  double FlowStressTable::lowest_rate() const
+  {
+    return std::exp(log_rates.front());
+  }
+
+  double FlowStressTable::highest_rate() const
+  {
+    return std::exp(log_rates.back());
   }
 } // namespace axiforge::laws

@@ -63,18 +63,22 @@ namespace axiforge::laws
             "friction layer between workpiece and tool. An entry that the law doesn't have must "
             "stay at its default.",
             Selection(selection_of(friction_laws)));
-      visit("Coefficient", p.coefficient, "mu [-] of coulomb, 0 or more.", Double());
+      visit("Coefficient", p.coefficient,
+            "mu [-] of coulomb, 0 to 1, needed there. No default: a law of friction without its "
+            "constant would be none.",
+            OptionalDouble());
       visit("Factor", p.factor,
             "m [-] of shear, arctan, tangential forces, 0 to 1; f' [-] of smm, 0 (no friction) to "
-            "less than 1 (sticking), beta = f'/(1-f').",
-            Double());
+            "less than 1 (sticking), beta = f'/(1-f'). Needed there, no default.",
+            OptionalDouble());
       visit(
           "Regularisation velocity", p.regularisation_velocity,
           "v0 [mm/s]: the slip at which coulomb, shear and tangential forces have reached 71 % "
           "and arctan 50 % of their value; it also keeps norton's slope finite. 0 means automatic: "
           "1e-3 of the characteristic speed, small against the slip nearly everywhere.",
           Double());
-      visit("Viscosity", p.viscosity, "K [MPa (s/mm)^q] of norton, 0 or more.", Double());
+      visit("Viscosity", p.viscosity,
+            "K [MPa (s/mm)^q] of norton, 0 or more. Needed there, no default.", OptionalDouble());
       visit("Exponent", p.exponent,
             "q [-] of norton, more than 0, up to 1. 1 is linear slip (Navier).", Double());
       visit("Layer thickness", p.layer_thickness,
@@ -104,6 +108,12 @@ namespace axiforge::laws
       return { secant * v, secant * (v0 / w) * (v0 / w), secant };
     }
 
+    /// The way out for a number that looks like one of per cent.
+    std::string per_cent(const double value)
+    {
+      return fmt::format("Is it meant in per cent? {} % is {}", value, value / 100.);
+    }
+
     double shear_yield_stress(const double flow_stress)
     {
       return flow_stress / std::sqrt(3.);
@@ -122,7 +132,7 @@ namespace axiforge::laws
   {
     EntryTexts texts;
     for_each_entry(*this, [&texts](const char *name, const auto &variable, const char *, auto &&) {
-      texts.emplace_back(name, fmt::format("{}", variable));
+      texts.emplace_back(name, text_of(variable));
     });
     return texts;
   }
@@ -150,8 +160,22 @@ namespace axiforge::laws
     check.reject_unused("Law = " + choice.name, choice.entries, parameters.entries(),
                         defaults.entries());
 
+    const auto has = [&](const std::string &entry) {
+      return std::find(choice.entries.begin(), choice.entries.end(), entry) != choice.entries.end();
+    };
+    const std::string none = "0 is no friction, which Law = none says as well";
+    if (has("Coefficient"))
+      check.needed("Coefficient", parameters.coefficient, none);
+    if (has("Factor"))
+      check.needed("Factor", parameters.factor, none);
+    if (has("Viscosity"))
+      check.needed("Viscosity", parameters.viscosity, none);
+
     // What stands at its default passes: the checks need not know which law reads which entry.
     check.between("Coefficient", parameters.coefficient, 0., infinity);
+    if (parameters.coefficient > 1.)
+      check.between("Coefficient", parameters.coefficient, 0., 1.,
+                    per_cent(parameters.coefficient));
     check.between("Viscosity", parameters.viscosity, 0., infinity);
     check.between("Regularisation velocity", parameters.regularisation_velocity, 0., infinity);
     check.between("Layer thickness", parameters.layer_thickness, 0., infinity);
@@ -159,6 +183,8 @@ namespace axiforge::laws
       throw InputError::entry(check.path("Exponent"), fmt::format("{}", parameters.exponent),
                               "it is out of range", "more than 0, up to 1",
                               "For a traction that does not depend on the slip use Law = shear");
+    if (parameters.factor >= 2.)
+      check.between("Factor", parameters.factor, 0., 1., per_cent(parameters.factor));
     if (law == FrictionKind::smm)
       check.below("Factor", parameters.factor, 0., 1.,
                   "The layer's beta = f'/(1-f') is infinite at f' = 1, which is sticking: use "
@@ -170,9 +196,7 @@ namespace axiforge::laws
     layer_element_ =
         find_choice(check, "Layer element", parameters.layer_element, elements).element;
 
-    const bool has_v0 = std::find(choice.entries.begin(), choice.entries.end(),
-                                  "Regularisation velocity") != choice.entries.end();
-    if (has_v0)
+    if (has("Regularisation velocity"))
       {
         regularisation_velocity_ = parameters.regularisation_velocity > 0.
                                        ? parameters.regularisation_velocity

@@ -32,7 +32,7 @@ namespace axiforge::laws
       return Hollomon{
         check.positive("Strength coefficient", c.strength),
         check.below(
-            "Hardening exponent", c.hardening_exponent, 0., 1.,
+            "Hardening exponent", check.needed("Hardening exponent", c.hardening_exponent), 0., 1.,
             "A stress in proportion to the strain vanishes at strain 0: use ludwik or swift"),
         check.between("Smallest strain", c.smallest_strain, 1e-12, 0.1)
       };
@@ -41,15 +41,19 @@ namespace axiforge::laws
     Hardening make_ludwik(const Constants &c, const EntryCheck &check)
     {
       return Ludwik{ check.positive("Yield stress", c.yield_stress),
-                     check.between("Strength coefficient", c.strength, 0., infinity),
-                     check.between("Hardening exponent", c.hardening_exponent, 0., 1.),
+                     check.between("Strength coefficient",
+                                   check.needed("Strength coefficient", c.strength), 0., infinity),
+                     check.between("Hardening exponent",
+                                   check.needed("Hardening exponent", c.hardening_exponent), 0.,
+                                   1.),
                      check.between("Smallest strain", c.smallest_strain, 1e-12, 0.1) };
     }
 
     Hardening make_swift(const Constants &c, const EntryCheck &check)
     {
       return Swift{ check.positive("Strength coefficient", c.strength),
-                    check.between("Hardening exponent", c.hardening_exponent, 0., 1.),
+                    check.between("Hardening exponent",
+                                  check.needed("Hardening exponent", c.hardening_exponent), 0., 1.),
                     check.positive(
                         "Prestrain", c.prestrain,
                         "It keeps the stress positive at strain 0; without it use hollomon") };
@@ -71,19 +75,23 @@ namespace axiforge::laws
 
     RateSensitivity make_power_rate(const Constants &c, const EntryCheck &check)
     {
-      return PowerRate{ check.between("Rate exponent", c.rate_exponent, 0., 1.),
+      return PowerRate{ check.between("Rate exponent",
+                                      check.needed("Rate exponent", c.rate_exponent), 0., 1.),
                         check.positive("Reference strain rate", c.reference_rate) };
     }
 
     RateSensitivity make_cowper_symonds(const Constants &c, const EntryCheck &check)
     {
-      return CowperSymonds{ check.between("Rate exponent", c.rate_exponent, 0., 1.),
+      return CowperSymonds{ check.between("Rate exponent",
+                                          check.needed("Rate exponent", c.rate_exponent), 0., 1.),
                             check.positive("Reference strain rate", c.reference_rate) };
     }
 
     RateSensitivity make_johnson_cook(const Constants &c, const EntryCheck &check)
     {
-      return JohnsonCook{ check.between("Rate coefficient", c.rate_coefficient, 0., 0.5),
+      return JohnsonCook{ check.between("Rate coefficient",
+                                        check.needed("Rate coefficient", c.rate_coefficient), 0.,
+                                        0.5),
                           check.positive("Reference strain rate", c.reference_rate) };
     }
 
@@ -166,10 +174,12 @@ namespace axiforge::laws
             Double());
       visit("Strength coefficient", p.strength,
             "C [MPa], the stress at the reference strain rate, of the power law; K [MPa] of "
-            "hollomon, ludwik, swift. 0 means not given.",
-            Double());
+            "hollomon, ludwik, swift. Needed there, no default.",
+            OptionalDouble());
       visit("Hardening exponent", p.hardening_exponent,
-            "n [-] of hollomon, ludwik, swift, 0 to 1; 0 means no hardening.", Double());
+            "n [-] of hollomon, ludwik, swift, 0 to 1; 0 means no hardening. Needed there, no "
+            "default.",
+            OptionalDouble());
       visit(
           "Smallest strain", p.smallest_strain,
           "eps_s [-] of hollomon and ludwik, whose slope is infinite at strain 0: below it the "
@@ -183,11 +193,12 @@ namespace axiforge::laws
             "eps_c [-] of voce. 0 means not given.", Double());
       visit("Rate exponent", p.rate_exponent,
             "m [-] of the power law, perzyna and the power and cowper-symonds factors, 0 to 1; 0 "
-            "means that the rate has no influence.",
-            Double());
+            "means that the rate has no influence. Needed there, no default.",
+            OptionalDouble());
       visit("Rate coefficient", p.rate_coefficient,
-            "C [-] of the johnson-cook factor, 0 to 0.5; 0 means that the rate has no influence.",
-            Double());
+            "C [-] of the johnson-cook factor, 0 to 0.5; 0 means that the rate has no influence. "
+            "Needed there, no default.",
+            OptionalDouble());
       visit("Reference strain rate", p.reference_rate,
             "epsdot0 [1/s] of the power law and of the power and johnson-cook factors; gamma [1/s] "
             "of perzyna and cowper-symonds. At 1 the power law is C epsdot^m.",
@@ -213,7 +224,7 @@ namespace axiforge::laws
   {
     EntryTexts texts;
     for_each_entry(*this, [&texts](const char *name, const auto &variable, const char *, auto &&) {
-      texts.emplace_back(name, fmt::format("{}", variable));
+      texts.emplace_back(name, text_of(variable));
     });
     return texts;
   }
@@ -288,6 +299,11 @@ namespace axiforge::laws
     const ValueAndSlope factor   = std::visit(call(rate), product.rate);
     return { hardened.value * factor.value, hardened.slope * factor.value,
              hardened.value * factor.slope };
+  }
+
+  const FlowStressTable *Material::table() const
+  {
+    return std::get_if<FlowStressTable>(&law);
   }
 
   bool Material::depends_on_strain() const

@@ -2,10 +2,13 @@
 #pragma once
 
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
+
+#include <axiforge/base/optional_number.h>
 
 namespace axiforge::laws
 {
@@ -30,6 +33,12 @@ namespace axiforge::laws
                    double             lower,
                    double             upper,
                    const std::string &way_out = "") const;
+
+    /// Returns the number, which must have been given. @p way_out is the sentence that ends the
+    /// message.
+    OptionalNumber needed(const std::string    &name,
+                          const OptionalNumber &value,
+                          const std::string    &way_out = "") const;
 
     /// Returns a value in [lower, upper).
     double below(const std::string &name,
@@ -57,6 +66,15 @@ namespace axiforge::laws
   private:
     std::string section;
   };
+
+  /// The value of an entry as it is compared with its default; a number left out counts as 0.
+  template <typename Value> std::string text_of(const Value &value)
+  {
+    if constexpr (std::is_same_v<Value, OptionalNumber>)
+      return fmt::format("{}", double(value));
+    else
+      return fmt::format("{}", value);
+  }
 
   /// The members `name` of a list of choices.
   template <typename List> std::vector<std::string> names_of(const List &choices)

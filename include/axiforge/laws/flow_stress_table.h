@@ -56,6 +56,13 @@ namespace axiforge::laws
     bool depends_on_strain() const;
     bool depends_on_rate() const;
 
+    /// The largest strain of the table.
+    double last_strain() const;
+
+    /// The rates [1/s] between which the table was measured; equal if there is one.
+    double lowest_rate() const;
+    double highest_rate() const;
+
   private:
     std::vector<double> strains;
     std::vector<double> log_rates;

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include <axiforge/base/optional_number.h>
 #include <axiforge/laws/entries.h>
 
 namespace dealii
@@ -43,18 +44,19 @@ namespace axiforge::laws
     lagrange     // 9 nodes, the middle one with the tool
   };
 
-  /// The entries of a tool's subsection Friction as they are read.
+  /// The entries of a tool's subsection Friction as they are read. The constants of a law have no
+  /// default: a law that needs one says so.
   struct FrictionParameters
   {
-    std::string law                     = "none";
-    double      coefficient             = 0.; // mu
-    double      factor                  = 0.; // m or f'
-    double      regularisation_velocity = 0.; // mm/s
-    double      viscosity               = 0.; // MPa (s/mm)^q
-    double      exponent                = 1.; // q
-    double      layer_thickness         = 0.; // mm
-    std::string layer_viscosity         = "layer";
-    std::string layer_element           = "lagrange";
+    std::string    law = "none";
+    OptionalNumber coefficient;                  // mu
+    OptionalNumber factor;                       // m or f'
+    double         regularisation_velocity = 0.; // mm/s
+    OptionalNumber viscosity;                    // MPa (s/mm)^q
+    double         exponent        = 1.;         // q
+    double         layer_thickness = 0.;         // mm
+    std::string    layer_viscosity = "layer";
+    std::string    layer_element   = "lagrange";
 
     /// Declares the entries in the handler's current section; parsing fills the members.
     void declare(dealii::ParameterHandler &prm);

@@ -4,6 +4,7 @@
 #include <string>
 #include <variant>
 
+#include <axiforge/base/optional_number.h>
 #include <axiforge/laws/entries.h>
 #include <axiforge/laws/flow_stress_table.h>
 #include <axiforge/laws/hardening.h>
@@ -17,25 +18,25 @@ namespace dealii
 namespace axiforge::laws
 {
   /**
-   * The entries of a material's section as they are read. A stress of 0 means "not given": a law
-   * that needs it says so.
+   * The entries of a material's section as they are read. What must be positive is 0 as long as it
+   * is not given; where 0 has a meaning there is no default. A law that needs it says so.
    */
   struct MaterialParameters
   {
-    std::string model                 = "perfectly plastic";
-    std::string hardening             = "none";
-    std::string rate_sensitivity      = "none";
-    double      yield_stress          = 0.; // MPa
-    double      strength              = 0.; // MPa
-    double      hardening_exponent    = 0.;
-    double      smallest_strain       = 1e-4;
-    double      prestrain             = 0.;
-    double      saturation_stress     = 0.; // MPa
-    double      characteristic_strain = 0.;
-    double      rate_exponent         = 0.;
-    double      rate_coefficient      = 0.;
-    double      reference_rate        = 1.; // 1/s
-    std::string table_file;
+    std::string    model            = "perfectly plastic";
+    std::string    hardening        = "none";
+    std::string    rate_sensitivity = "none";
+    double         yield_stress     = 0.; // MPa
+    OptionalNumber strength;              // MPa
+    OptionalNumber hardening_exponent;
+    double         smallest_strain       = 1e-4;
+    double         prestrain             = 0.;
+    double         saturation_stress     = 0.; // MPa
+    double         characteristic_strain = 0.;
+    OptionalNumber rate_exponent;
+    OptionalNumber rate_coefficient;
+    double         reference_rate = 1.; // 1/s
+    std::string    table_file;
 
     /// Declares the entries in the handler's current section; parsing fills the members.
     void declare(dealii::ParameterHandler &prm);
@@ -75,6 +76,9 @@ namespace axiforge::laws
 
     bool depends_on_strain() const;
     bool depends_on_rate() const;
+
+    /// The table of `Model = table`; null for a formula.
+    const FlowStressTable *table() const;
 
   private:
     struct Product
