@@ -10,6 +10,7 @@
 #include <axiforge/base/phases.h>
 #include <axiforge/base/single_process.h>
 #include <axiforge/process/run.h>
+#include <axiforge/scene/scene.h>
 #include <axiforge/study/study.h>
 
 namespace
@@ -74,7 +75,7 @@ int main(int argc, char **argv)
   app.add_flag("--validate", options.validate,
                "Read and check everything, meshes included; run nothing");
   app.add_flag("--print-parameters", options.print_parameters,
-               "Print all entries with their values and texts");
+               "Print all entries with their values and texts; without a file, all there are");
   app.set_version_flag("--version",
                        "axiforge " + options.version + " (revision " + options.revision + ")");
   app.footer(
@@ -82,6 +83,13 @@ int main(int argc, char **argv)
   try
     {
       app.parse(argc, argv);
+      if (options.parameter_file.empty() && options.print_parameters && !study->parsed())
+        {
+          dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+          if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+            std::cout << axiforge::scene::print_all_entries();
+          return 0;
+        }
       if (options.parameter_file.empty())
         throw CLI::RequiredError("FILE.prm");
     }

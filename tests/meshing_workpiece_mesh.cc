@@ -22,6 +22,7 @@
 
 #include <axiforge/base/errors.h>
 #include <axiforge/base/gmsh_session.h>
+#include <axiforge/base/notes.h>
 #include <axiforge/meshing/mesh_checks.h>
 #include <axiforge/meshing/workpiece_mesh.h>
 
@@ -440,6 +441,114 @@ TEST_F(Files, FourAndNineNodesAndCad)
   EXPECT_NEAR(curved.volume(), sphere_volume, 1e-4 * sphere_volume);
   EXPECT_NEAR(cad.volume(), sphere_volume, 1e-4 * sphere_volume);
   EXPECT_GT(n_edges(curved, "axis"), 2u);
+}
+
+/// The workpiece of a STEP file that gmsh writes of a .geo with OpenCASCADE.
+class CadFiles : public Files
+{
+protected:
+  WorkpieceMesh read_step(const std::string &geo, const std::string &face = "") const
+  {
+    const std::string path = folder + "/part.step";
+    std::filesystem::remove(path);
+    {
+      GmshSession session;
+      session.open(file("make.geo", "SetFactory(\"OpenCASCADE\");\n" + geo));
+      session.run("writing", [&]() { gmsh::write(path); });
+    }
+    GeometryParameters parameters;
+    parameters.file         = path;
+    parameters.face         = face;
+    parameters.element_size = 2;
+    return read_workpiece(parameters, "Workpiece", "");
+  }
+
+  std::string message(const std::string &geo, const std::string &face = "") const
+  {
+    try
+      {
+        read_step(geo, face);
+      }
+    catch (const InputError &error)
+      {
+        return error.what();
+      }
+    return "no error";
+  }
+};
+
+// A tube of 4 and 10 mm, 6 mm high, from z = 3 on, about each axis of the file.
+TEST_F(CadFiles, SolidsAreCutAtTheirMeridian)
+{
+  const double volume = M_PI * (100 - 16) * 6;
+  for (const std::string axis : { "0, 0, 6", "0, 6, 0", "6, 0, 0" })
+    {
+      const std::string start = axis[0] == '6' ? "3, 0, 0" : axis[3] == '6' ? "0, 3, 0" : "0, 0, 3";
+      const WorkpieceMesh mesh = read_step(
+          "Cylinder(1) = {" + start + ", " + axis + ", 10};\nCylinder(2) = {" + start + ", " +
+          axis + ", 4};\nBooleanDifference(3) = { Volume{1}; Delete; }{ Volume{2}; Delete; };\n");
+      EXPECT_NEAR(mesh.volume(), volume, 1e-6 * volume) << axis;
+      for (const Point &x : mesh.vertices)
+        {
+          EXPECT_GT(x[0], 4 - 1e-6);
+          if (axis[0] != '6')
+            EXPECT_NEAR(x[1], 6, 3 + 1e-6);
+        }
+    }
+  EXPECT_NEAR(read_step("Sphere(1) = {0, 0, 0, 10};\n").volume(), 2 * sphere_volume,
+              1e-3 * sphere_volume);
+  EXPECT_NE(message("Box(1) = {0, 0, 0, 3, 4, 5};\n").find("none of revolution"),
+            std::string::npos);
+}
+
+TEST_F(CadFiles, FacesAreChosenAndTurnedIntoThePlane)
+{
+  const std::string two  = "Rectangle(1) = {0, 0, 0, 10, 5};\nRectangle(2) = {20, 0, 0, 4, 5};\n";
+  const double      disc = M_PI * 100 * 5, ring = M_PI * (24 * 24 - 20 * 20) * 5;
+  EXPECT_NEAR(read_step(two, "largest").volume(), disc, 1e-6 * disc);
+  EXPECT_NEAR(read_step(two, "2").volume(), ring, 1e-6 * ring);
+  const std::string text = message(two);
+  EXPECT_NE(text.find("its faces are 1 (50 mm^2), 2 (20 mm^2)"), std::string::npos) << text;
+  EXPECT_NE(text.find("Set \"Workpiece/Face\""), std::string::npos) << text;
+  EXPECT_NE(message(two, "3").find("\"Workpiece/Face\" = \"3\""), std::string::npos);
+
+  const std::string one  = "Rectangle(1) = {2, 3, 0, 8, 5};\n";
+  const double      tube = M_PI * (100 - 4) * 5;
+  for (const std::string turn : { "", "Rotate{ {1, 0, 0}, {0, 0, 0}, Pi/2 }{ Surface{1}; }\n",
+                                  "Rotate{ {1, 0, 0}, {0, 0, 0}, Pi/2 }{ Surface{1}; }\nRotate{ "
+                                  "{0, 0, 1}, {0, 0, 0}, Pi/2 }{ "
+                                  "Surface{1}; }\n",
+                                  "Translate{0, 0, 7}{ Surface{1}; }\n",
+                                  "Rotate{ {0, 1, 0}, {0, 0, 0}, Pi }{ Surface{1}; }\n" })
+    {
+      const WorkpieceMesh mesh = read_step(one + turn);
+      EXPECT_NEAR(mesh.volume(), tube, 1e-6 * tube) << turn;
+      for (const Point &x : mesh.vertices)
+        EXPECT_NEAR(x[1], 5.5, 2.5 + 1e-6) << turn;
+    }
+  EXPECT_NE(message(one + "Rotate{ {1, 0, 0}, {0, 0, 0}, 1 }{ Surface{1}; }\n")
+                .find("plane of the file's axes"),
+            std::string::npos);
+}
+
+TEST_F(Files, ASizeThatDoesNothingIsNoted)
+{
+  take_notes();
+  const std::string free = file("disc.geo", quarter_disc);
+  read(free, "", 2);
+  EXPECT_TRUE(take_notes().empty());
+  const std::string transfinite =
+      file("square.geo",
+           "Point(1) = {0, 0, 0, 2}; Point(2) = {10, 0, 0, 2}; Point(3) = {10, 10, 0, 2};\n"
+           "Point(4) = {0, 10, 0, 2}; Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4};\n"
+           "Line(4) = {4, 1}; Curve Loop(1) = {1, 2, 3, 4}; Plane Surface(1) = {1};\n"
+           "Transfinite Curve{1, 2, 3, 4} = 4; Transfinite Surface{1};\n");
+  read(transfinite, "", 0);
+  EXPECT_TRUE(take_notes().empty());
+  EXPECT_EQ(read(transfinite, "", 1).cells.size(), 9u);
+  const std::vector<std::string> notes = take_notes();
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_NE(notes[0].find("\"Workpiece/Element size\" = \"1\" does nothing"), std::string::npos);
 }
 
 TEST_F(Files, ClockwiseElementsAreTurnedOver)

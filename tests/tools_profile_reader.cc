@@ -92,6 +92,43 @@ TEST_F(Reader, CsvPolyline)
   EXPECT_DOUBLE_EQ(block.length(), 13);
 }
 
+TEST_F(Reader, CsvColumnsGoByTheirHeader)
+{
+  for (const std::string text : { "z_mm,r_mm\n2,0\n2,8\n", "z [mm];r [mm];\n2;0;\n2;8;\n",
+                                  "Z,R\n2,0\n2,8\n", "y,x\n2,0\n2,8\n", "r_mm,z_mm\n0,2\n8,2\n",
+                                  "0,2\n8,2\n", "\"height (mm)\",\"radius (mm)\"\n2,0\n2,8\n" })
+    {
+      Profile profile = read_profile_csv(file("die.csv", text), "Tool lower");
+      profile.orient({ Point(1, 3) });
+      EXPECT_DOUBLE_EQ(nearest(profile, Point(5, 3)).gap, 1) << text;
+    }
+  for (const std::string header : { "r_in,z_in", "r_m,z_m", "a,b", "r,r", "t,z" })
+    {
+      const std::string path = file("bad.csv", header + "\n0,2\n8,2\n");
+      expect_all_in({ "bad.csv", "its header names the columns", "r_mm and z_mm" },
+                    message([&]() { read_profile_csv(path, "Tool lower"); }));
+    }
+}
+
+// A tool as a solid: its section's outline; a platen of 10 mm radius from z = 4 to 6.
+TEST_F(Reader, SolidsOfCadFilesAreCut)
+{
+  const std::string step = folder + "/tool.step";
+  for (const std::string axis : { "{0, 0, 4, 0, 0, 2, 10}", "{0, 4, 0, 0, 2, 0, 10}" })
+    {
+      {
+        GmshSession session;
+        session.open(
+            file("make.geo", "SetFactory(\"OpenCASCADE\");\nCylinder(1) = " + axis + ";\n"));
+        session.run("writing", [&]() { gmsh::write(step); });
+      }
+      Profile tool = read_profile_gmsh(step, "", {}, "Tool upper");
+      tool.orient({ Point(0, 0), Point(5, 0) });
+      EXPECT_NEAR(tool.length(), 10 + 2 + 10, 1e-9);
+      EXPECT_NEAR(nearest(tool, Point(5, 1)).gap, 3, 1e-9);
+    }
+}
+
 TEST_F(Reader, FaultyCsv)
 {
   const auto fault = [&](const std::string &text) {

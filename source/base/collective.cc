@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <algorithm>
 #include <cstdint>
+#include <new>
 
 #include <deal.II/base/mpi.h>
 
@@ -16,6 +17,7 @@ namespace axiforge
       done,
       input_error,
       computation_error,
+      no_memory,
       other
     };
     std::pair<int, std::string> outcome(done, "");
@@ -32,6 +34,10 @@ namespace axiforge
         {
           outcome = { computation_error, error.what() };
         }
+      catch (const std::bad_alloc &)
+        {
+          outcome = { no_memory, "" };
+        }
       catch (const std::exception &error)
         {
           outcome = { other, error.what() };
@@ -43,6 +49,8 @@ namespace axiforge
         throw InputError(outcome.second);
       case computation_error:
         throw ComputationError(outcome.second);
+      case no_memory:
+        throw std::bad_alloc();
       case other:
         throw std::runtime_error(outcome.second);
       default:

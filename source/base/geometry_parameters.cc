@@ -36,6 +36,11 @@ namespace axiforge
         "given "
         "boundary conditions.");
     prm.add_parameter(
+        "Face", face,
+        "Which face of a .step, .stp or .brep is the workpiece's meridian section: its number as "
+        "gmsh counts them, or \"largest\". Empty (default): the only one; a solid of revolution is "
+        "cut along its meridian.");
+    prm.add_parameter(
         "Element size", element_size,
         "Edge length of the elements [mm] that gmsh aims at; where the section is narrow they come "
         "out "

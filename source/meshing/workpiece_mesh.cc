@@ -9,9 +9,11 @@
 #include <fmt/format.h>
 #include <gmsh.h>
 
+#include <axiforge/base/cad_section.h>
 #include <axiforge/base/csv.h>
 #include <axiforge/base/errors.h>
 #include <axiforge/base/gmsh_session.h>
+#include <axiforge/base/notes.h>
 #include <axiforge/meshing/mesh_checks.h>
 #include <axiforge/meshing/straight_lines.h>
 #include <axiforge/meshing/workpiece_mesh.h>
@@ -43,6 +45,25 @@ namespace axiforge::meshing
 
     std::vector<int> surfaces_of_workpiece(const Source &source)
     {
+      const std::string &face = source.parameters.face;
+      if (source.session.holds_cad())
+        {
+          int        section = 0;
+          const auto cut     = [&] {
+            section =
+                section_of_cad(face, [&](const std::string &what, const std::string &way_out) {
+                  return source.wrong(what, way_out);
+                });
+          };
+          source.session.try_out("taking the meridian section", cut);
+          source.session.run("taking the meridian section", cut);
+          return { section };
+        }
+      if (!face.empty())
+        throw InputError::entry(source.section + "/Face", face,
+                                fmt::format("\"{}\" is no CAD file", source.file),
+                                "nothing, or a .step, .stp or .brep as Geometry file",
+                                "The workpiece in a .geo or .msh is chosen by \"Physical group\"");
       const std::string &group = source.parameters.physical_group;
       std::vector<int>   surfaces;
       if (!group.empty())
@@ -177,6 +198,46 @@ namespace axiforge::meshing
             fmt::format("0, or at least {:.3g} mm", std::sqrt(area / most)));
     }
 
+
+    /// Number of nodes that gmsh makes of the surfaces with one size everywhere.
+    std::size_t n_nodes_with(const double size)
+    {
+      gmsh::option::setNumber("Mesh.MeshSizeMin", size);
+      gmsh::option::setNumber("Mesh.MeshSizeMax", size);
+      gmsh::model::mesh::clear();
+      gmsh::model::mesh::generate(2);
+      std::vector<std::size_t> tags;
+      std::vector<double>      x, parametric;
+      gmsh::model::mesh::getNodes(tags, x, parametric);
+      return tags.size();
+    }
+
+    /// A file that says the numbers of cells itself (transfinite) does not listen to a size.
+    void note_idle_size(const Source &source, const std::vector<int> &surfaces)
+    {
+      const double size = source.parameters.element_size;
+      if (!(size > 0))
+        return;
+      bool idle = source.session.holds_mesh();
+      if (!idle && source.session.mentions("Transfinite"))
+        source.session.run("meshing the workpiece", [&] {
+          for (const int surface : surfaces) // its own may be the one that crashes
+            gmsh::model::mesh::setAlgorithm(2, surface, 6);
+          idle = n_nodes_with(size) == n_nodes_with(2 * size);
+          gmsh::option::setNumber("Mesh.MeshSizeMin", size);
+          gmsh::option::setNumber("Mesh.MeshSizeMax", size);
+        });
+      if (idle)
+        note(
+            fmt::format("Entry \"{}/Element size\" = \"{}\" does nothing: the file \"{}\" {}.",
+                        source.section, size, source.file,
+                        source.session.holds_mesh()
+                            ? "is a mesh already. \"Refinement levels\" divides its cells"
+                            : "says the numbers of cells itself (transfinite). Change them, by its "
+                              "\"Geometry parameters\" if it has some, or take \"Refinement "
+                              "levels\""));
+    }
+
     void generate_mesh(const Source &source, const std::vector<int> &surfaces)
     {
       gmsh::vectorpair all;
@@ -200,6 +261,7 @@ namespace axiforge::meshing
           gmsh::option::setNumber("Mesh.MeshSizeFromCurvature", 0);
           gmsh::option::setNumber("Mesh.MeshSizeMin", size);
           gmsh::option::setNumber("Mesh.MeshSizeMax", size);
+          note_idle_size(source, surfaces);
         }
 
       double recombination = 0;
@@ -208,7 +270,7 @@ namespace axiforge::meshing
       for (const auto &[other_algorithm, other_recombination] : more_algorithms)
         attempts.emplace_back(other_algorithm, other_recombination);
 
-      source.session.run("meshing the workpiece", [&]() {
+      const auto mesh = [&]() {
         for (const auto &[attempted_algorithm, attempted_recombination] : attempts)
           {
             gmsh::model::mesh::clear();
@@ -227,7 +289,11 @@ namespace axiforge::meshing
               break;
           }
         gmsh::model::mesh::setOrder(2);
-      });
+      };
+      if (source.session.holds_cad() || source.session.mentions("Merge") ||
+          source.session.mentions("OpenCASCADE"))
+        source.session.try_out("meshing the workpiece", mesh);
+      source.session.run("meshing the workpiece", mesh);
     }
 
     /// Nodes of an element in the order of FE_Q(2), from gmsh's: corners counter-clockwise, middles
@@ -526,7 +592,9 @@ namespace axiforge::meshing
         parse_geometry_parameters(parameters.parameters, section + "/Geometry parameters"),
         section + "/Geometry file");
     const std::vector<int> surfaces = surfaces_of_workpiece(source);
-    if (!source.session.holds_mesh())
+    if (source.session.holds_mesh())
+      note_idle_size(source, surfaces);
+    else
       generate_mesh(source, surfaces);
 
     WorkpieceMesh                             mesh;

@@ -16,6 +16,7 @@
 #include <axiforge/process/progress.h>
 #include <axiforge/process/scene_checks.h>
 #include <axiforge/process/step.h>
+#include <axiforge/process/table_watch.h>
 
 namespace axiforge::process
 {
@@ -235,6 +236,7 @@ namespace axiforge::process
     StepTimes sum;
     Progress  progress(scene, quiet);
     FoldWatch folds(scene, quiet);
+    TableWatch table(scene, quiet);
     progress.start(state);
     checkpoints.enter(scene, chain, results);
     try
@@ -257,6 +259,7 @@ namespace axiforge::process
             sum.add(record.times);
             if (on_step)
               on_step(scene, record);
+            table.after_step(state, record.time_step);
             folds.after_step(state, record);
             progress.mesh(adapt_if_due(scene, state, solver, record));
             if (checkpoints.after_step(state, record))
@@ -268,9 +271,11 @@ namespace axiforge::process
         checkpoints.at_end(state, record);
         results.write_fields(state);
         results.finish();
+        table.tell(state);
       }
     catch (const ComputationError &error)
       {
+        table.tell(state);
         throw ComputationError(error.what() +
                                keep_what_there_is(state, record, results, checkpoints));
       }

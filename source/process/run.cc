@@ -11,6 +11,7 @@
 #include <axiforge/base/collective.h>
 #include <axiforge/base/errors.h>
 #include <axiforge/base/features.h>
+#include <axiforge/base/notes.h>
 #include <axiforge/base/phases.h>
 #include <axiforge/base/wording.h>
 #include <axiforge/meshing/initial_state.h>
@@ -222,6 +223,8 @@ namespace axiforge::process
         std::cout << fmt::format("\nOperation {} of {}: {}\n", k + 1, chain.operations.size(),
                                  chain.operations[k].operation);
       warn(scene, chain.quiet);
+      if (!chain.quiet)
+        print_notes(std::cout);
       output::Results results(scene, state, chain.folder_of(k), own,
                               resumed ? &resumed->results : nullptr);
       chain.checkpoints.more_follow = k + 1 < chain.operations.size();
@@ -323,6 +326,8 @@ namespace axiforge::process
     check_features(operations);
     if (options.print_parameters)
       {
+        if (!quiet)
+          print_notes(std::cerr);
         if (first)
           std::cout << print_all(operations);
         return;
@@ -362,6 +367,8 @@ namespace axiforge::process
         tell(ready.notes, quiet);
       }
     check_later_operations(operations, meshing::outline_of(mesh));
+    if (!quiet)
+      print_notes(std::cout);
     if (options.validate)
       {
         if (first && !quiet)

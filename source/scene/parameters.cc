@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include <axiforge/base/errors.h>
+#include <axiforge/base/notes.h>
 #include <axiforge/scene/scene.h>
 
 namespace axiforge::scene
@@ -486,6 +487,77 @@ namespace axiforge::scene
   }
 
 
+  template <typename Parameters>
+  std::string SceneParameters::changed_entries(const ParameterFile &file,
+                                               const std::string   &section,
+                                               Parameters           defaults) const
+  {
+    ParameterHandler fresh;
+    defaults.declare(fresh);
+    std::string names;
+    handler->enter_subsection(section);
+    for (const std::string &name : file.entries_of(section))
+      if (name.find('/') == std::string::npos && handler->get(name) != fresh.get(name))
+        names += (names.empty() ? "\"" : ", \"") + name + "\"";
+    handler->leave_subsection();
+    return names;
+  }
+
+
+  std::map<std::string, std::string> SceneParameters::idle_entries(const ParameterFile &file) const
+  {
+    std::map<std::string, std::string> idle;
+    const bool                         by_error = accuracy.target != "none";
+    if (!refinement.enabled && !by_error)
+      idle["Refinement\" with \"Enabled = false"] =
+          changed_entries(file, "Refinement", RefinementParameters());
+    if (!remeshing.enabled)
+      idle["Remeshing\" with \"Enabled = false"] =
+          changed_entries(file, "Remeshing", RemeshingParameters());
+    if (folding.when_found == "off")
+      idle["Folding\" with \"When found = off"] =
+          changed_entries(file, "Folding", FoldingParameters());
+    if (!accuracy.estimate_errors && !by_error)
+      idle["Accuracy\" with \"Target accuracy = none"] =
+          changed_entries(file, "Accuracy", AccuracyParameters());
+    return idle;
+  }
+
+
+  namespace
+  {
+    /// Notes sections that no operation enables and that have entries all the same.
+    void note_idle_entries(const ParameterFile                &file,
+                           const std::vector<std::string>     &operations,
+                           const std::vector<SceneParameters> &all)
+    {
+      std::map<std::string, std::string>  first;
+      std::map<std::string, unsigned int> n_idle;
+      for (unsigned int k = 0; k < all.size(); ++k)
+        for (const auto &[section, names] : all[k].idle_entries(
+                 operations.empty() ? file : file.seen_by("Operation", operations[k])))
+          {
+            ++n_idle[section];
+            if (first[section].empty())
+              first[section] = names;
+          }
+      for (const auto &[section, names] : first)
+        if (!names.empty() && n_idle[section] == all.size())
+          note("Section \"" + section + "\" does nothing, and it is given " + names +
+               ". Enable it, or take the entries out.");
+    }
+  } // namespace
+
+
+  std::string print_all_entries()
+  {
+    return SceneParameters(
+               ParameterFile(std::vector<std::string>{ "Tools = NAME", "Boundaries = NAME",
+                                                       "Regions = NAME", "Gauges = NAME" }))
+        .print();
+  }
+
+
   std::vector<SceneParameters> read_operations(const ParameterFile &file)
   {
     std::string      list;
@@ -518,13 +590,15 @@ namespace axiforge::scene
         // The workpiece is made once.
         const GeometryParameters &own = result.back().workpiece, &first = result[0].workpiece;
         if (own.file != first.file || own.parameters != first.parameters ||
-            own.physical_group != first.physical_group || own.element_size != first.element_size ||
+            own.physical_group != first.physical_group || own.face != first.face ||
+            own.element_size != first.element_size ||
             own.refinement_levels != first.refinement_levels)
           throw InputError::entry("Operation " + operation + "/Workpiece/Geometry file", own.file,
                                   "the workpiece of an operation is what the one before has made",
                                   "a section Workpiece outside of the operations only",
                                   "Take it out of the operation");
       }
+    note_idle_entries(file, operations, result);
     return result;
   }
 

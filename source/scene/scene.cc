@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <cctype>
 #include <iostream>
 #include <limits>
 #include <sstream>
@@ -51,12 +52,38 @@ namespace axiforge::scene
     };
 
 
+    /// Whether a comma stands outside of a function's arguments: the parser would go on with what
+    /// stands behind it.
+    bool has_stray_comma(const std::string &text)
+    {
+      std::vector<bool> of_function; // of the open brackets
+      char              before = 0;  // last character but blanks
+      for (const char c : text)
+        {
+          if (c == '(')
+            of_function.push_back(std::isalnum(static_cast<unsigned char>(before)) ||
+                                  before == '_');
+          else if (c == ')' && !of_function.empty())
+            of_function.pop_back();
+          else if (c == ',' && (of_function.empty() || !of_function.back()))
+            return true;
+          if (!std::isspace(static_cast<unsigned char>(c)))
+            before = c;
+        }
+      return false;
+    }
+
+
     /// An expression in r, z and t as a function; empty for 'free'.
     std::function<double(const Point &, double)> parse_expression(const std::string &entry,
                                                                   const std::string &text)
     {
       if (text == "free")
         return {};
+      if (has_stray_comma(text) || text.find(';') != std::string::npos)
+        throw InputError::entry(
+            entry, text, "it has a comma or semicolon outside of a function's brackets",
+            "one expression in r, z and t", "The decimal sign is a point: 1.5, not 1,5");
       auto             function = std::make_shared<dealii::FunctionParser<2>>(1);
       const KeptErrors errors;
       try

@@ -8,6 +8,7 @@
 #include <axiforge/base/atomic_file.h>
 #include <axiforge/base/collective.h>
 #include <axiforge/base/errors.h>
+#include <axiforge/base/notes.h>
 #include <axiforge/base/wording.h>
 #include <axiforge/meshing/initial_state.h>
 #include <axiforge/output/folder.h>
@@ -232,6 +233,8 @@ namespace axiforge::study
     Findings                     study;
     study.plan = make_plan(parameters);
     check_entry(options, study.plan);
+    if (!quiet)
+      print_notes(std::cout);
     const Facts facts = first_facts(options, study.plan, communicator);
     choose_quantities(parameters, facts.columns, study.plan);
     if (study.plan.at == Place::strokes && !facts.has_stroke)
@@ -273,6 +276,8 @@ namespace axiforge::study
                     << std::flush;
         on_first_rank(communicator, [&] { write_files(folder, title, study); });
       }
+    if (!quiet)
+      print_notes(std::cout); // those of the meshes
     if (!quiet)
       std::cout << text_report(study.plan, study.runs, study.items) << "\nResults: " << folder
                 << "/study.csv, study.md, study.svg, run_1 ...\n"

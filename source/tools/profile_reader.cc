@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
 #include <map>
+#include <regex>
+#include <set>
 
 #include <fmt/format.h>
 #include <gmsh.h>
 
+#include <axiforge/base/cad_section.h>
 #include <axiforge/base/csv.h>
 #include <axiforge/base/errors.h>
 #include <axiforge/tools/profile_reader.h>
@@ -221,6 +226,51 @@ namespace axiforge::tools
     }
   } // namespace
 
+  namespace
+  {
+    /// The name of a column without its unit, in lower case: "r" of "R_mm", "r [mm]", "r (mm)".
+    std::string bare_name(const std::string &name, std::string &unit)
+    {
+      std::string lower;
+      for (const char c : name)
+        lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+      static const std::regex pattern(R"(([a-z]+)[\s_/,]*[\[(]?([a-z"]*)[\])]?)");
+      std::smatch             parts;
+      if (!std::regex_match(lower, parts, pattern))
+        return lower;
+      unit = parts[2];
+      return parts[1];
+    }
+
+    /// The columns of r and z: as the header says, or in that order where there is none.
+    std::array<unsigned int, 2> columns_of_profile(const CsvTable &table, const std::string &entry)
+    {
+      if (table.header.empty())
+        return { { 0, 1 } };
+      static const std::set<std::string> radial = { "r", "radius", "radial", "x" },
+                                         axial  = { "z", "height", "axial", "y" };
+      constexpr unsigned int      none          = 2;
+      std::array<unsigned int, 2> columns{ { none, none } };
+      bool                        in_mm = true;
+      for (unsigned int c = 0; c < table.header.size(); ++c)
+        {
+          std::string       unit;
+          const std::string name = bare_name(table.header[c], unit);
+          in_mm                  = in_mm && (unit.empty() || unit == "mm");
+          if (radial.count(name))
+            columns[0] = c;
+          else if (axial.count(name))
+            columns[1] = c;
+        }
+      if (!in_mm || columns[0] == none || columns[1] == none)
+        throw InputError::entry(
+            entry, table.file,
+            fmt::format("its header names the columns {}", fmt::join(table.header, ", ")),
+            "r_mm and z_mm, in any order, or no header for r and then z in mm");
+      return columns;
+    }
+  } // namespace
+
   Profile read_profile_csv(const std::string &file, const std::string &section)
   {
     const std::string entry = section + "/Geometry file";
@@ -232,11 +282,13 @@ namespace axiforge::tools
     if (table.columns() != 2)
       throw wrong(0, fmt::format("there are {} columns", table.columns()));
 
+    const std::array<unsigned int, 2> columns = columns_of_profile(table, entry);
+
     std::vector<Point> points;
     Box                box;
     for (unsigned int row = 0; row < table.rows.size(); ++row)
       {
-        const Point x(table.rows[row][0], table.rows[row][1]);
+        const Point x(table.rows[row][columns[0]], table.rows[row][columns[1]]);
         if (x[0] < 0)
           throw wrong(row, fmt::format("r = {} is negative", x[0]));
         if (row > 0 && x == points.back())
@@ -262,7 +314,13 @@ namespace axiforge::tools
     session.open(file, parameters, entry);
 
     std::vector<int> curves;
-    if (physical_group.empty() || session.holds_cad())
+    if (session.holds_cad())
+      session.run("taking the tool's curves", [&] {
+        curves = curves_of_cad([&](const std::string &what, const std::string &way_out) {
+          return InputError::entry(entry, file, what, "", way_out);
+        });
+      });
+    else if (physical_group.empty())
       {
         gmsh::vectorpair entities;
         gmsh::model::getEntities(entities, 1);

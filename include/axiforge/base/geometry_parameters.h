@@ -16,6 +16,7 @@ namespace axiforge
     std::string  file;
     std::string  parameters; ///< "Radius = 25, Height = 12.5"
     std::string  physical_group;
+    std::string  face;                  ///< of a CAD file: "", its number or "largest". Workpiece
     double       element_size      = 0; ///< [mm], 0: as the file says. Workpiece only
     unsigned int refinement_levels = 0; ///< workpiece only
 

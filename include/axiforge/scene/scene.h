@@ -234,8 +234,18 @@ namespace axiforge::scene
     /// Reads the files that tools and material name. @throws InputError
     void check_files() const;
 
+    /// Of each section that is not enabled, the entries that it is given for nothing, in words; by
+    /// its name.
+    std::map<std::string, std::string> idle_entries(const ParameterFile &file) const;
+
   private:
     void declare(dealii::ParameterHandler &prm);
+
+    /// Of `section`, the entries given that are not at their defaults in @p defaults, in words.
+    template <typename Parameters>
+    std::string changed_entries(const ParameterFile &file,
+                                const std::string   &section,
+                                Parameters           defaults) const;
 
     std::string tool_names, boundary_names, operation_names, region_names, gauge_names;
     std::shared_ptr<dealii::ParameterHandler> handler;
@@ -249,6 +259,10 @@ namespace axiforge::scene
    * @throws InputError
    */
   std::vector<SceneParameters> read_operations(const ParameterFile &file);
+
+  /// All entries there are with their defaults and texts, in .prm form: one section of each family
+  /// (tools, boundaries, regions, gauges), with the name NAME.
+  std::string print_all_entries();
 
   /// Does something and puts the name of the operation before the message of an InputError or
   /// ComputationError that comes out; with an empty name nothing is added.
