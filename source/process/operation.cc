@@ -232,10 +232,10 @@ namespace axiforge::process
   {
     const unsigned int remeshings_before = state.remeshing.count - chain.present.remeshings;
     auto               solver            = std::make_unique<solvers::FlowSolver>(scene, state);
-    double    largest_force = std::max(chain.present.largest_force, largest_force_of(record));
-    StepTimes sum;
-    Progress  progress(scene, quiet);
-    FoldWatch folds(scene, quiet);
+    double     largest_force = std::max(chain.present.largest_force, largest_force_of(record));
+    StepTimes  sum;
+    Progress   progress(scene, quiet);
+    FoldWatch  folds(scene, quiet);
     TableWatch table(scene, quiet);
     progress.start(state);
     checkpoints.enter(scene, chain, results);

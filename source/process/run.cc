@@ -80,12 +80,20 @@ namespace axiforge::process
     }
 
 
-    void tell(const std::vector<std::string> &notes, const bool quiet)
+    void remember(const std::vector<std::string> &notes)
     {
-      for (const std::string &note : notes)
-        if (!quiet)
-          std::cout << "Note: " << note << '\n';
-      std::cout << std::flush;
+      for (const std::string &text : notes)
+        note(text);
+    }
+
+
+    /// Notes are told in any case: with --quiet apart from what a script reads.
+    void tell_notes(const bool quiet, const MPI_Comm communicator)
+    {
+      if (dealii::Utilities::MPI::this_mpi_process(communicator) != 0)
+        take_notes();
+      else
+        print_notes(quiet ? std::cerr : std::cout);
     }
 
 
@@ -223,8 +231,7 @@ namespace axiforge::process
         std::cout << fmt::format("\nOperation {} of {}: {}\n", k + 1, chain.operations.size(),
                                  chain.operations[k].operation);
       warn(scene, chain.quiet);
-      if (!chain.quiet)
-        print_notes(std::cout);
+      tell_notes(chain.quiet, state.communicator);
       output::Results results(scene, state, chain.folder_of(k), own,
                               resumed ? &resumed->results : nullptr);
       chain.checkpoints.more_follow = k + 1 < chain.operations.size();
@@ -263,7 +270,8 @@ namespace axiforge::process
                 if (!scene)
                   {
                     Start start = start_operation(operation, nullptr, state);
-                    tell(start.notes, chain.quiet);
+                    remember(start.notes);
+                    tell_notes(chain.quiet, state.communicator);
                     scene                  = std::move(start.scene);
                     chain.progress.outline = start.outline;
                   }
@@ -361,14 +369,13 @@ namespace axiforge::process
     Start ready;
     if (!options.resume)
       {
-        tell(mesh.notes, quiet);
-        tell(check_curves(operations, mesh.boundary_ids), quiet);
+        remember(mesh.notes);
+        remember(check_curves(operations, mesh.boundary_ids));
         scene::in_operation(start.operation, [&] { ready = start_operation(start, &mesh, state); });
-        tell(ready.notes, quiet);
+        remember(ready.notes);
       }
     check_later_operations(operations, meshing::outline_of(mesh));
-    if (!quiet)
-      print_notes(std::cout);
+    tell_notes(quiet, communicator);
     if (options.validate)
       {
         if (first && !quiet)

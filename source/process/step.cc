@@ -164,6 +164,27 @@ namespace axiforge::process
     }
 
 
+    /// The way out of a step that fails, by its reason.
+    std::string advice_on(const scene::Scene &scene, const std::string &failure)
+    {
+      const auto says = [&](const char *words) { return failure.find(words) != std::string::npos; };
+      if (says("turn over") || says("turns over"))
+        return std::string("The mesh is used up there: ") +
+               (scene.remeshing.enabled
+                    ? "take smaller cells (\"Remeshing/Element size\")"
+                    : "start again with a finer or a graded mesh, \"Remeshing/Enabled = true\"") +
+               ", less friction or a more rate-sensitive material; a closed die that is full can't "
+               "be closed further.";
+      if (says("power"))
+        return "The friction law does not hold there (take \"shear\" in place of \"tangential "
+               "forces\"), or the solver's tolerance is too loose: lower \"Flow "
+               "solver/Tolerance\", take shorter steps or a finer mesh.";
+      return "If the iterations do not converge, raise \"Flow solver/Most iterations\" or \"Flow "
+             "solver/Regularisation\", or take shorter steps; a closed die that is full can't be "
+             "closed further.";
+    }
+
+
     void accept(State &state, solvers::FlowResult &result, const double time_step)
     {
       state.move_nodes(result.velocity, time_step);
@@ -267,7 +288,7 @@ namespace axiforge::process
             double   fill = 0;
             try
               {
-                size                = measure(state);
+                size                = measure(state, &before);
                 const double radius = scene.process.fill_radius;
                 if (radius > 0)
                   fill = fill_fraction(scene, state, radius, state.time + time_step);
@@ -322,17 +343,11 @@ namespace axiforge::process
         ++repeats;
         time_step /= 2;
         if (time_step < shortest || repeats > most_repeats)
-          throw ComputationError(fmt::format("The run can't go on at time {:.6g} s, stroke {:.6g} "
-                                             "mm, step {}: {}. The step was repeated "
-                                             "{} times, down to {:.3g} s. If a cell turns over, "
-                                             "the mesh is used up there: take a finer or "
-                                             "a graded mesh, less friction or a more "
-                                             "rate-sensitive material. If the iterations do not "
-                                             "converge, raise \"Flow solver/Most iterations\" or "
-                                             "\"Flow solver/Regularisation\"; a "
-                                             "closed die that is full can't be closed further.",
-                                             state.time, scene.stroke(state.time), state.step + 1,
-                                             result.failure, repeats, 2 * time_step));
+          throw ComputationError(fmt::format(
+              "The run can't go on at time {:.6g} s, stroke {:.6g} mm, step {}: {}. The "
+              "step was repeated {} times, down to {:.3g} s. {}",
+              state.time, scene.stroke(state.time), state.step + 1, result.failure, repeats,
+              2 * time_step, advice_on(scene, result.failure)));
       }
   }
 } // namespace axiforge::process

@@ -86,7 +86,7 @@ namespace axiforge::process
     const double slowest = min(lowest_rate, state.communicator);
     const double fastest = max(highest_rate, state.communicator);
     const double largest = max(largest_strain, state.communicator);
-    if (quiet || !(outside > worth_telling * all))
+    if (this_mpi_process(state.communicator) != 0 || !(outside > worth_telling * all))
       return;
     std::string measured = fmt::format("strains up to {:.4g}", table->last_strain());
     std::string used     = fmt::format("strains up to {:.4g}", largest);
@@ -96,11 +96,12 @@ namespace axiforge::process
                                 table->highest_rate());
         used += fmt::format(" and rates from {:.4g} to {:.4g} 1/s", slowest, fastest);
       }
-    std::cout << fmt::format(
-                     "Warning: {:.0f} % of the plastic work was done outside of the table of "
-                     "\"Material/Table file\": it has {}, the workpiece has {}. The stress there "
-                     "is that of the table's edge; extend the table.\n",
-                     100 * outside / all, measured, used)
-              << std::flush;
+    // Told in any case; apart from what --quiet asks for.
+    (quiet ? std::cerr : std::cout)
+        << fmt::format("Warning: {:.0f} % of the plastic work was done outside of the table of "
+                       "\"Material/Table file\": it has {}, the workpiece has {}. The stress there "
+                       "is that of the table's edge; extend the table.\n",
+                       100 * outside / all, measured, used)
+        << std::flush;
   }
 } // namespace axiforge::process

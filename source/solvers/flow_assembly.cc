@@ -230,7 +230,7 @@ namespace axiforge::solvers
         if (worst == worst_of_all)
           {
             CellDofs x;
-            load_cell(position, worst_cell, x);
+            load_cell(state.position, worst_cell, x); // where it was: in the workpiece
             place[0] = x[16];
             place[1] = x[17];
           }

@@ -68,7 +68,7 @@ namespace axiforge
   }
 
 
-  Measures measure(const State &state)
+  Measures measure(const State &state, const Field *places)
   {
     const Tables &tables = Tables::get();
     Measures      result{};
@@ -107,7 +107,9 @@ namespace axiforge
         if (!(scaled >= result.smallest_jacobian))
           {
             result.smallest_jacobian = scaled;
-            result.worst_place       = Point(x[8][0], x[8][1]);
+            const Field &named       = places ? *places : state.position;
+            for (unsigned int c = 0; c < 2; ++c)
+              result.worst_place[c] = named.local_element(2 * state.tables.cells[cell][8] + c);
           }
       }
     for (unsigned int e = 0; e < state.tables.edges.size(); ++e)

@@ -21,7 +21,8 @@ namespace axiforge
   };
 
   /// Collective.
-  Measures measure(const State &state);
+  /// @param places positions that worst_place is named by, if not the present ones [mm]
+  Measures measure(const State &state, const Field *places = nullptr);
 
   /// Lowest and highest z alone [mm]. Collective.
   std::pair<double, double> vertical_extent(const State &state);
