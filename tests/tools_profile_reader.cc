@@ -99,7 +99,7 @@ TEST_F(Reader, CsvColumnsGoByTheirHeader)
                                   "0,2\n8,2\n", "\"height (mm)\",\"radius (mm)\"\n2,0\n2,8\n" })
     {
       Profile profile = read_profile_csv(file("die.csv", text), "Tool lower");
-      profile.orient({ Point(1, 3) });
+      profile.orient({ Point(1, 3), Point(4, 3), Point(4, 5) });
       EXPECT_DOUBLE_EQ(nearest(profile, Point(5, 3)).gap, 1) << text;
     }
   for (const std::string header : { "r_in,z_in", "r_m,z_m", "a,b", "r,r", "t,z" })

@@ -119,6 +119,8 @@ namespace axiforge
                         "The workpiece is one piece: give a file with it alone");
           if (section.size() == 1)
             {
+              // What is left of the solids would be meshed, too.
+              gmsh::model::occ::remove(solids, /* recursive = */ true);
               gmsh::model::occ::synchronize();
               return section.front().second;
             }

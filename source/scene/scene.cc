@@ -274,11 +274,10 @@ namespace axiforge::scene
 
   namespace
   {
-    /// Steps that are lost in the rounding errors, or more of them than anyone waits for.
+    /// Steps that are lost in the rounding errors.
     void check_steps(const TimeParameters &time, const Scene &scene)
     {
       constexpr double smallest_travel = 1e-8; // over the size
-      constexpr double most            = 1e7;
       const bool       by_stroke       = time.stroke_per_step > 0;
       if (!by_stroke && time.time_step == 0)
         return;
@@ -292,15 +291,6 @@ namespace axiforge::scene
                                 "the tools would travel less than rounding errors let tell",
                                 fmt::format("0, or at least {:.3g} {} ({} of the workpiece's size)",
                                             least, by_stroke ? "mm" : "s", smallest_travel));
-      const ProcessParameters &process = scene.process;
-      const bool               ends_earlier =
-          process.end_force > 0 || process.end_height > 0 || process.end_fill > 0;
-      const double steps = (by_stroke ? scene.stroke(scene.end_time()) : scene.end_time()) / given;
-      if (steps > most && time.most_steps > 1 && !ends_earlier)
-        throw InputError::entry(entry, fmt::format("{:.6g}", given),
-                                fmt::format("the run would take {:.3g} steps", steps),
-                                fmt::format("steps that make {:.0e} of the whole at most", most),
-                                "Take longer steps, or 0: they are chosen then");
     }
 
 

@@ -42,7 +42,8 @@ noted transfinite '"Workpiece/Element size" = "2" does nothing'
 
 sed 's/set Law    = smm/# from D:\\friction\\\n    set Law = smm/' scene/cylinder_upsetting.prm >scene/comment.prm
 validate comment comment.prm
-noted comment 'comment.prm:42: The comment ends in a backslash'
+line=$(grep -nF 'friction\' scene/comment.prm | cut -d: -f1)
+noted comment "comment.prm:$line: The comment ends in a backslash"
 run comment_print 0 comment.prm --print-parameters
 grep -qE '^ *set Law  *= smm' comment_print/stdout || fail "the comment has swallowed the line"
 
