@@ -57,9 +57,8 @@ name=included
 run included 0 others/own.prm --set "Workpiece/Geometry parameters/RadialCells = 4" \
   --set "Workpiece/Geometry parameters/AxialCells = 4"
 quiet included
-cp included/output/input.prm scene/others/input.prm
 name=input
-run input 0 others/input.prm
+run input 0 "$PWD/included/output/input.prm"
 compare included/output/history.csv input/output/history.csv -v rel=0
 
 name=range
