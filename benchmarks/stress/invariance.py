@@ -70,6 +70,7 @@ def run(session):
                         for row in other.rows:
                             # A tool at rest has its force along +z.
                             row["force_platen_N"] *= -1
+                            row["end_force_platen_N"] *= -1
                     deviation, column = difference(base, other)
                     table.add(name, friction, f"{tolerance:.0e}", change, "done", other.iterations, deviation, column)
                     # The positions of a scene that is far from z = 0 are rounded.
