@@ -9,6 +9,7 @@
 #include <axiforge/meshing/adapt.h>
 #include <axiforge/meshing/carried_cell.h>
 #include <axiforge/meshing/geometry_marks.h>
+#include <axiforge/meshing/volume.h>
 #include <axiforge/state/measures.h>
 #include <axiforge/state/recovery.h>
 
@@ -309,7 +310,10 @@ namespace axiforge::meshing
       report.changed       = true;
       report.cells         = state.tables.n_global_cells;
       report.volume_change = measure(state).volume / volume - 1;
-      report.strain_change = strain > 0 ? strain_integral(state) / strain - 1 : 0;
+      state.remeshing.missing_volume =
+          give_volume_back(scene, state, volume + state.remeshing.missing_volume);
+      report.missing_volume = state.remeshing.missing_volume / volume;
+      report.strain_change  = strain > 0 ? strain_integral(state) / strain - 1 : 0;
     }
   } // namespace
 

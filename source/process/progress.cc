@@ -73,17 +73,21 @@ namespace axiforge::process
   {
     if (quiet || !report.changed)
       return;
-    std::cout << fmt::format("mesh adapted: {} cells, {}changes of volume {:.1e}, of the strain's "
-                             "integral {:.1e}{}\n",
-                             report.cells,
-                             report.estimated_error > 0
-                                 ? fmt::format("estimated error of the stress {:.2g}, ",
-                                               report.estimated_error)
-                                 : "",
-                             report.volume_change, report.strain_change,
-                             report.refused
-                                 ? fmt::format(", {} families kept for the outline", report.refused)
-                                 : "")
+    std::cout << fmt::format(
+                     "mesh adapted: {} cells, {}changes of volume {:.1e}, of the strain's "
+                     "integral {:.1e}{}{}\n",
+                     report.cells,
+                     report.estimated_error > 0
+                         ? fmt::format("estimated error of the stress {:.2g}, ",
+                                       report.estimated_error)
+                         : "",
+                     report.volume_change, report.strain_change,
+                     std::abs(report.missing_volume) > 1e-9
+                         ? fmt::format(", {:.1e} of the volume missing", report.missing_volume)
+                         : "",
+                     report.refused
+                         ? fmt::format(", {} families kept for the outline", report.refused)
+                         : "")
               << std::flush;
   }
 

@@ -12,7 +12,7 @@ namespace axiforge
   namespace
   {
     /// To be raised with every change of what a file holds.
-    constexpr std::uint32_t format_version = 4;
+    constexpr std::uint32_t format_version = 5;
     const std::string       magic          = "AXIFORGE CHECKPOINT\n";
     constexpr std::uint32_t byte_order     = 0x01020304;
   } // namespace
@@ -105,10 +105,10 @@ namespace axiforge
   /// The numbers of the state that belong to no cell and no node.
   template <typename Archive> void visit(Archive &archive, RemeshingRecord &object)
   {
-    auto &[count, volume_jump, strain_jump, wanted_cells, last_attempt, jacobian, vertex_jacobian,
-           penetration, division] = object;
-    archive(count, volume_jump, strain_jump, wanted_cells, last_attempt, jacobian, vertex_jacobian,
-            penetration, division);
+    auto &[count, volume_jump, strain_jump, missing_volume, wanted_cells, last_attempt, jacobian,
+           vertex_jacobian, penetration, division] = object;
+    archive(count, volume_jump, strain_jump, missing_volume, wanted_cells, last_attempt, jacobian,
+            vertex_jacobian, penetration, division);
   }
 
   template <typename Archive> void visit_numbers(Archive &archive, State &state)

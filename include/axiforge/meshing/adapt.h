@@ -16,6 +16,7 @@ namespace axiforge::meshing
     unsigned int refused         = 0; ///< families that were not coarsened, to keep the outline
     double       estimated_error = 0; ///< recovery estimate over the norm of the stress, before
     double       volume_change   = 0; ///< relative, by new nodes that are put on a tool
+    double       missing_volume  = 0; ///< relative: what of all changes could not be given back
     double       strain_change   = 0; ///< relative, of the integral of the effective strain
   };
 
@@ -34,7 +35,8 @@ namespace axiforge::meshing
    * exactly on refinement, the quantities of the Gauss points by their polynomial, kept in the
    * range of the old cell (no new extremes, strain never negative). Coarsening that would move the
    * outline by more than 1e-6 of the edge is refused. New surface nodes inside a tool are put on
-   * its profile. The FlowSolver has to be made anew if something changed. Collective.
+   * its profile; the volume that this takes is given back by the free surface (volume.h). The
+   * FlowSolver has to be made anew if something changed. Collective.
    */
   AdaptReport adapt(const scene::Scene &scene, State &state);
 

@@ -9,6 +9,8 @@ namespace axiforge
     unsigned int count       = 0;
     double       volume_jump = 0; ///< sum of the jumps before the volume was restored [mm^3]
     double       strain_jump = 0; ///< sum of the jumps of int strain dV [mm^3]
+    /// What new meshes and refinements have cut off and not given back yet [mm^3].
+    double missing_volume = 0;
 
     unsigned int wanted_cells = 0; ///< cells at the start; 0 before the first remeshing
     unsigned int last_attempt = 0; ///< step after which a new mesh was made or tried
