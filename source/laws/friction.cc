@@ -6,6 +6,7 @@
 #include <deal.II/base/parameter_handler.h>
 
 #include <axiforge/base/errors.h>
+#include <axiforge/base/notes.h>
 #include <axiforge/laws/friction.h>
 
 namespace axiforge::laws
@@ -173,9 +174,14 @@ namespace axiforge::laws
 
     // What stands at its default passes: the checks need not know which law reads which entry.
     check.between("Coefficient", parameters.coefficient, 0., infinity);
-    if (parameters.coefficient > 1.)
+    if (parameters.coefficient >= 2.)
       check.between("Coefficient", parameters.coefficient, 0., 1.,
                     per_cent(parameters.coefficient));
+    if (parameters.coefficient > 1.)
+      note(fmt::format("\"{}\" = {} is more than any pair of materials has: the surface will stick "
+                       "wherever it is pressed. In per cent, {} % is {}.",
+                       check.path("Coefficient"), parameters.coefficient, parameters.coefficient,
+                       parameters.coefficient / 100));
     check.between("Viscosity", parameters.viscosity, 0., infinity);
     check.between("Regularisation velocity", parameters.regularisation_velocity, 0., infinity);
     check.between("Layer thickness", parameters.layer_thickness, 0., infinity);

@@ -46,13 +46,13 @@ namespace axiforge::meshing
           for (unsigned int a = 0; a < 3; ++a)
             x[a] = state.node_position(edge.nodes[a]);
           const Vector2                chord   = x[1] - x[0];
-          const std::array<Vector2, 3> tangent = {
-            { 4 * (x[2] - x[0]) - chord, 4 * (x[1] - x[2]) - chord, chord }
-          };
+          const std::array<Vector2, 3> tangent = { { 4 * (x[2] - x[0]) - chord,
+                                                     4 * (x[1] - x[2]) - chord, chord } };
           // The cell's middle tells the outside.
-          const Point  inside  = state.node_position(state.tables.cells[edge.cell][8]);
-          const double outward = chord[1] * (x[2][0] - inside[0]) - chord[0] * (x[2][1] - inside[1]);
-          const double sign    = outward > 0 ? 1 : -1;
+          const Point  inside = state.node_position(state.tables.cells[edge.cell][8]);
+          const double outward =
+              chord[1] * (x[2][0] - inside[0]) - chord[0] * (x[2][1] - inside[1]);
+          const double sign = outward > 0 ? 1 : -1;
           for (unsigned int a = 0; a < 3; ++a)
             for (unsigned int c = 0; c < 2; ++c)
               normals.local_element(2 * edge.nodes[a] + c) +=
@@ -86,7 +86,8 @@ namespace axiforge::meshing
           for (const scene::Tool &tool : scene.tools)
             {
               std::array<tools::Contact, 2> found;
-              if (tool.profile.find(Point(x - tool.motion.displacement(state.time)), far, found) > 0)
+              if (tool.profile.find(Point(x - tool.motion.displacement(state.time)), far, found) >
+                  0)
                 clear = std::min(clear, std::max(0., found[0].gap));
             }
           Vector2 direction = clear / far / length * normal;
@@ -132,11 +133,10 @@ namespace axiforge::meshing
         if (std::abs(missing) <= volume_tolerance * volume || missing == missing_before ||
             std::abs(distance) == most)
           break;
-        const double next =
-            distance - missing * (distance - before) / (missing - missing_before);
-        before         = distance;
-        missing_before = missing;
-        distance       = std::clamp(next, -most, most);
+        const double next = distance - missing * (distance - before) / (missing - missing_before);
+        before            = distance;
+        missing_before    = missing;
+        distance          = std::clamp(next, -most, most);
       }
     return missing;
   }

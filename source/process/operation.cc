@@ -39,24 +39,35 @@ namespace axiforge::process
     }
 
 
+    std::string reason_of(const ComputationError &error)
+    {
+      const auto *failed = dynamic_cast<const StepError *>(&error);
+      return failed ? failed->reason : error.what();
+    }
+
+
     /// The step once more on new meshes, the first of the usual size, where the step has failed.
     StepRecord step_on_another_mesh(const scene::Scene                   &scene,
                                     State                                &state,
                                     std::unique_ptr<solvers::FlowSolver> &solver,
                                     const Progress                       &progress,
                                     const StepRecord                     &last,
-                                    const bool                            is_fresh)
+                                    const bool                            is_fresh,
+                                    const std::string                    &failure)
     {
       constexpr unsigned int repeats   = 4;
       constexpr double       factors[] = { 1, 0.8, 0.65, 1.25 };
       unsigned int           n_meshes  = is_fresh ? 1 : 0;
+      std::string            reason    = failure;
       for (const double factor : factors)
         {
           if (is_fresh && factor == 1)
             continue; // it would be the same mesh
-          if (!remesh(scene, state, solver, progress,
-                      n_meshes == 0 ? "a step failed" : "the step failed on the new mesh, too",
-                      factor))
+          if (!remesh(
+                  scene, state, solver, progress,
+                  (n_meshes == 0 ? "a step failed: " : "the step failed on the new mesh, too: ") +
+                      reason,
+                  factor))
             continue;
           ++n_meshes;
           try
@@ -64,9 +75,10 @@ namespace axiforge::process
               return advance(scene, state, *solver, choose_step_size(scene, state, last), last,
                              repeats);
             }
-          catch (const ComputationError &)
+          catch (const ComputationError &error)
             {
               // The next mesh, or the last one with as short steps as are allowed.
+              reason = reason_of(error);
             }
         }
       try
@@ -102,9 +114,10 @@ namespace axiforge::process
           return advance(scene, state, *solver, choose_step_size(scene, state, last), last,
                          is_fresh ? repeats_on_fresh_mesh : repeats_before_remeshing);
         }
-      catch (const ComputationError &)
+      catch (const ComputationError &error)
         {
-          return step_on_another_mesh(scene, state, solver, progress, last, is_fresh);
+          return step_on_another_mesh(scene, state, solver, progress, last, is_fresh,
+                                      reason_of(error));
         }
     }
 

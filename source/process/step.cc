@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
 #include <deal.II/base/mpi.h>
 
 #include <axiforge/base/errors.h>
@@ -24,6 +28,10 @@ namespace axiforge::process
 
     /// Share of the powers of a step that may be missing from their balance.
     constexpr double largest_imbalance = 1e-3;
+
+    /// Share of the plastic power that goes into the few points whose strain rate is not to decide
+    /// on the step: corners and ends of contact, whose rate grows with every division of the cells.
+    constexpr double concentrated_power = 0.01;
 
     /// Powers below this share of yield stress times area times speed are those of a body at rest.
     constexpr double least_power = 1e-6;
@@ -56,13 +64,36 @@ namespace axiforge::process
     }
 
 
-    /// Largest effective strain rate that the cells remember [1/s].
-    double largest_rate(const State &state)
+    /// The effective strain rate that decides on the step [1/s]: of what the cells remember, the
+    /// one that is exceeded in a share concentrated_power of the plastic power only; to 1/16 of a
+    /// power of two.
+    double governing_rate(const State &state)
     {
-      double rate = 0;
+      double largest = 0;
       for (const CellHistory &cell : state.cell_history)
-        rate = std::max(rate, *std::max_element(cell.strain_rate.begin(), cell.strain_rate.end()));
-      return MPI::max(rate, state.communicator);
+        largest =
+            std::max(largest, *std::max_element(cell.strain_rate.begin(), cell.strain_rate.end()));
+      largest = MPI::max(largest, state.communicator);
+      if (!(largest > 0))
+        return 0;
+      constexpr unsigned int n_bins = 256, per_octave = 16;
+      std::vector<double>    power(n_bins, 0.), sum(n_bins);
+      for (unsigned int cell = 0; cell < state.tables.cells.size(); ++cell)
+        {
+          const CellHistory          &history = state.cell_history[cell];
+          const std::array<double, 9> volume  = volumes_of_points(state, cell);
+          for (unsigned int q = 0; q < 9; ++q)
+            if (const double rate = history.strain_rate[q]; rate > 0)
+              power[std::min(n_bins - 1., per_octave * std::log2(largest / rate))] +=
+                  volume[q] * rate * history.flow_stress[q];
+        }
+      MPI::sum(power, state.communicator, sum);
+      const double above  = concentrated_power * std::accumulate(sum.begin(), sum.end(), 0.);
+      double       beyond = 0;
+      unsigned int bin    = 0;
+      while (bin + 1 < n_bins && (beyond += sum[bin]) < above)
+        ++bin;
+      return largest * std::exp2(-static_cast<double>(bin) / per_octave);
     }
 
 
@@ -219,11 +250,7 @@ namespace axiforge::process
     double step = plain_step(scene, state);
     if (!given && state.step > 0)
       {
-        // A new mesh has its own largest rate.
-        const bool is_fresh =
-            state.remeshing.count > 0 && state.remeshing.last_attempt == state.step;
-        const double rate = is_fresh ? largest_rate(state) : last.largest_strain_rate;
-        if (rate > 0)
+        if (const double rate = governing_rate(state); rate > 0)
           step = std::min(step, limits.largest_strain_increment / rate);
         step = std::min(step, limits.largest_motion * shortest_distortion_time(state));
       }
@@ -234,15 +261,20 @@ namespace axiforge::process
       step =
           std::max(step, shortest); // velocities carried to a new mesh may be rugged: it is tried
     if (step < shortest)
-      throw ComputationError(fmt::format(
-          "The run can't go on at time {:.6g} s, stroke {:.6g} mm, step {}: the flow has become so "
-          "uneven that a step would have to be {:.3g} s short, less than \"Time stepping/Smallest "
-          "step\" = {} of the usual one. The mesh is used up: {}.",
-          state.time, scene.stroke(state.time), state.step + 1, step, limits.smallest_step,
-          scene.remeshing.enabled
-              ? "take smaller cells (\"Remeshing/Element size\") or an earlier new mesh "
-                "(\"Remeshing/Smallest Jacobian\")"
-              : "start again with a finer or a graded mesh, or with \"Remeshing/Enabled = true\""));
+      throw StepError(
+          fmt::format(
+              "The run can't go on at time {:.6g} s, stroke {:.6g} mm, step {}: the flow has "
+              "become so "
+              "uneven that a step would have to be {:.3g} s short, less than \"Time "
+              "stepping/Smallest "
+              "step\" = {} of the usual one. The mesh is used up: {}.",
+              state.time, scene.stroke(state.time), state.step + 1, step, limits.smallest_step,
+              scene.remeshing.enabled
+                  ? "take smaller cells (\"Remeshing/Element size\") or an earlier new mesh "
+                    "(\"Remeshing/Smallest Jacobian\")"
+                  : "start again with a finer or a graded mesh, or with \"Remeshing/Enabled = "
+                    "true\""),
+          "the flow has become uneven");
     // What is left is shared out evenly, so that the last step is no splinter.
     return left / std::max(1., std::ceil(left / step - 1e-6));
   }
@@ -343,11 +375,13 @@ namespace axiforge::process
         ++repeats;
         time_step /= 2;
         if (time_step < shortest || repeats > most_repeats)
-          throw ComputationError(fmt::format(
-              "The run can't go on at time {:.6g} s, stroke {:.6g} mm, step {}: {}. The "
-              "step was repeated {} times, down to {:.3g} s. {}",
-              state.time, scene.stroke(state.time), state.step + 1, result.failure, repeats,
-              2 * time_step, advice_on(scene, result.failure)));
+          throw StepError(
+              fmt::format(
+                  "The run can't go on at time {:.6g} s, stroke {:.6g} mm, step {}: {}. The "
+                  "step was repeated {} times, down to {:.3g} s. {}",
+                  state.time, scene.stroke(state.time), state.step + 1, result.failure, repeats,
+                  2 * time_step, advice_on(scene, result.failure)),
+              result.failure);
       }
   }
 } // namespace axiforge::process

@@ -29,6 +29,10 @@ namespace axiforge::solvers
     /// Share of its edges by which a node that neither holds nor stays out may be in a tool.
     constexpr double deepest_left_in = 0.01;
 
+    /// Nodes that pull with more than this share of what the worst one pulls with are released with
+    /// it.
+    constexpr double at_once = 0.5;
+
     /// Share of a tool's way in a step by which it has to come nearer in order to press.
     constexpr double approach = 1e-6;
 
@@ -60,6 +64,8 @@ namespace axiforge::solvers
           if (scene.boundaries[i].name == group.first)
             condition[group.second] = i;
       }
+    if (!scene.tools.empty())
+      length = edge_lengths();
   }
 
 
@@ -312,7 +318,9 @@ namespace axiforge::solvers
       }
     if (released)
       {
-        ++n_releases[b];
+        if (++n_releases[b] > 1) // to and fro: friction comes and goes with it
+          left_in[b] =
+              deepest_left_in * length.local_element(2 * state.tables.boundary_nodes[b].node);
         contact.reaction = { { 0, 0 } };
       }
     return released;
@@ -340,10 +348,9 @@ namespace axiforge::solvers
     worst = MPI::max(worst, state.communicator);
     if (!(worst > 0))
       return 0;
-    const Field  length    = edge_lengths();
     unsigned int n_changes = 0;
     for (unsigned int b = 0; b < nodes.size(); ++b)
-      if (tension(b) >= worst * (1 - 1e-12))
+      if (tension(b) >= worst * at_once)
         {
           const BoundaryNode &node = state.tables.boundary_nodes[b];
           left_in[b]               = deepest_left_in * length.local_element(2 * node.node);
@@ -384,7 +391,6 @@ namespace axiforge::solvers
     if (MPI::max(static_cast<unsigned int>(any), state.communicator) == 0)
       return 0;
 
-    const Field  length    = edge_lengths();
     unsigned int n_changes = 0;
     for (unsigned int b = 0; b < nodes.size(); ++b)
       {

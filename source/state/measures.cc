@@ -133,12 +133,10 @@ namespace axiforge
   }
 
 
-  double integral(const State                                     &state,
-                  const unsigned int                               cell,
-                  const std::function<double(unsigned int point)> &quantity)
+  std::array<double, 9> volumes_of_points(const State &state, const unsigned int cell)
   {
-    const Tables &tables = Tables::get();
-    double        sum    = 0;
+    const Tables         &tables = Tables::get();
+    std::array<double, 9> volumes;
     for (unsigned int q = 0; q < 9; ++q)
       {
         double radius = 0, J[2][2] = { { 0, 0 }, { 0, 0 } };
@@ -150,9 +148,20 @@ namespace axiforge
               for (unsigned int j = 0; j < 2; ++j)
                 J[i][j] += x[i] * tables.derivative[q][a][j];
           }
-        sum += 2 * M_PI * radius * (J[0][0] * J[1][1] - J[0][1] * J[1][0]) * tables.weight[q] *
-               quantity(q);
+        volumes[q] = 2 * M_PI * radius * (J[0][0] * J[1][1] - J[0][1] * J[1][0]) * tables.weight[q];
       }
+    return volumes;
+  }
+
+
+  double integral(const State                                     &state,
+                  const unsigned int                               cell,
+                  const std::function<double(unsigned int point)> &quantity)
+  {
+    const std::array<double, 9> volumes = volumes_of_points(state, cell);
+    double                      sum     = 0;
+    for (unsigned int q = 0; q < 9; ++q)
+      sum += volumes[q] * quantity(q);
     return sum;
   }
 

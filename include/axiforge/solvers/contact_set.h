@@ -144,10 +144,11 @@ namespace axiforge::solvers
     std::vector<double>       left_in;    ///< how deep a free node may be in a tool [mm]
     std::vector<double>       curvature;  ///< of the first tool at each boundary node [1/mm]
     std::vector<Vector2>      tool_velocities;
-    std::vector<unsigned int> condition;      ///< per boundary id
-    Field                     area;           ///< that the nodes stand for [mm^2]
-    double                    reach;          ///< how far an active node is looked for [mm]
-    double                    catch_distance; ///< gaps below this are round-off [mm]
-    double                    least_tension;  ///< that counts as one [N]
+    std::vector<unsigned int> condition; ///< per boundary id
+    Field  length; ///< half the lengths of the edges at each node, in the first component [mm]
+    Field  area;   ///< that the nodes stand for [mm^2]
+    double reach;  ///< how far an active node is looked for [mm]
+    double catch_distance; ///< gaps below this are round-off [mm]
+    double least_tension;  ///< that counts as one [N]
   };
 } // namespace axiforge::solvers

@@ -27,6 +27,10 @@ namespace axiforge
   /// Lowest and highest z alone [mm]. Collective.
   std::pair<double, double> vertical_extent(const State &state);
 
+  /// Volume that each Gauss point of a locally owned cell stands for, in the present geometry
+  /// [mm^3].
+  std::array<double, 9> volumes_of_points(const State &state, unsigned int cell);
+
   /// Integral over the body of revolution of a quantity given at the Gauss points of a locally
   /// owned
   /// cell, in the present geometry.
