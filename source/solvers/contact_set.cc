@@ -48,6 +48,7 @@ namespace axiforge::solvers
       , scene(scene)
       , state(state)
       , n_releases(nodes.size(), 0)
+      , slides(nodes.size(), false)
       , left_in(nodes.size(), 0.)
       , curvature(nodes.size(), 0.)
       , tool_velocities(scene.tools.size())
@@ -318,7 +319,10 @@ namespace axiforge::solvers
       }
     if (released)
       {
-        if (++n_releases[b] > 1) // to and fro: friction comes and goes with it
+        // To and fro: friction comes and goes with it, so it has to do without; if that is not it,
+        // it is left in the tool a little.
+        slides[b] = ++n_releases[b] > 1;
+        if (n_releases[b] > free_releases)
           left_in[b] =
               deepest_left_in * length.local_element(2 * state.tables.boundary_nodes[b].node);
         contact.reaction = { { 0, 0 } };
@@ -351,11 +355,7 @@ namespace axiforge::solvers
     unsigned int n_changes = 0;
     for (unsigned int b = 0; b < nodes.size(); ++b)
       if (tension(b) >= worst * at_once)
-        {
-          const BoundaryNode &node = state.tables.boundary_nodes[b];
-          left_in[b]               = deepest_left_in * length.local_element(2 * node.node);
-          n_changes += release(b, scale) * node.owned;
-        }
+        n_changes += release(b, scale) * state.tables.boundary_nodes[b].owned;
     return n_changes;
   }
 
@@ -420,6 +420,8 @@ namespace axiforge::solvers
     result.tool    = middle.tool[0];
     result.touches = { { false, false, true } };
     result.normal.fill(middle.normal[0]);
+    for (unsigned int a = 0; a < 3; ++a)
+      result.rubs[a] = !slides[boundary.boundary_nodes[a]];
     for (unsigned int a = 0; a < 2; ++a)
       {
         const NodeContact &end = nodes[boundary.boundary_nodes[a]];
@@ -523,7 +525,7 @@ namespace axiforge::solvers
         for (unsigned int i = 0; i < 2; ++i)
           if (contact.tool[i] != no_tool)
             prescribe(contact.normal[i], -contact.gap[i] / time_step);
-        if (contact.active() &&
+        if (contact.active() && !slides[b] &&
             scene.tools[contact.tool[0]].friction.kind() == laws::FrictionKind::sticking)
           {
             const Vector2 along = tangent(contact.normal[0]);

@@ -214,7 +214,8 @@ namespace axiforge::solvers
         const Vector2 t = ContactSet::tangent(touch.normal[0]);
         touch.slip      = (v - contact->tool_velocity(touch.tool[0])) * t;
         const bool sticking =
-            scene.tools[touch.tool[0]].friction.kind() == laws::FrictionKind::sticking;
+            scene.tools[touch.tool[0]].friction.kind() == laws::FrictionKind::sticking &&
+            contact->rubs(b);
         if (sticking)
           touch.slip = 0;
         if (!node.owned)

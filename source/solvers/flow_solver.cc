@@ -20,6 +20,10 @@ namespace axiforge::solvers
     /// Share of the characteristic forces and rates below which a workpiece counts as at rest.
     constexpr double at_rest = 1e-3;
 
+    /// As long as contact still changes, a step may take so many times "Flow solver/Most
+    /// iterations".
+    constexpr unsigned int most_changing = 3;
+
     /// Passes over the lagged strain rate of friction in the first step, which has no step before
     /// it.
     constexpr unsigned int first_step_passes = 3;
@@ -136,7 +140,7 @@ namespace axiforge::solvers
       start_anew();
 
     bool                move_dual = false;
-    unsigned int        passes = 0, stalled = 0;
+    unsigned int        passes = 0, stalled = 0, last_change = 0;
     std::vector<double> residuals;
     for (unsigned int iteration = 0;; ++iteration)
       {
@@ -205,7 +209,9 @@ namespace axiforge::solvers
             result.converged = true;
             break;
           }
-        if (iteration == scene.flow.most_iterations)
+        last_change = changes > 0 ? iteration : last_change;
+        if (iteration == most_changing * scene.flow.most_iterations ||
+            iteration - last_change == scene.flow.most_iterations)
           {
             failure =
                 fmt::format("no convergence in {} iterations (residual {:.2g}, divergence {:.2g}, "

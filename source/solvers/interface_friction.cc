@@ -170,6 +170,13 @@ namespace axiforge::solvers
                 }
             evaluate_traction(e, flow_stress, contact, newton);
           }
+        for (unsigned int a = 0; a < 3; ++a)
+          if (!touch.rubs[a])
+            {
+              edge.force[a] = edge.traction[a] = 0;
+              for (unsigned int b = 0; b < 3; ++b)
+                edge.matrix[a][b] = edge.matrix[b][a] = 0;
+            }
         edge.power = 0;
         for (unsigned int a = 0; a < 3; ++a)
           edge.power += edge.force[a] * edge.slip[a];

@@ -63,10 +63,11 @@ namespace axiforge::solvers
     unsigned int update_reactions(const Field &force, const Field &scale, bool may_release);
 
     /**
-     * Releases, of the nodes that are still under tension when all else has converged, the one that
-     * pulls most: they were released and caught again in this step. Friction, which comes and goes
-     * with a node, allows neither state of such a node exactly; it is left in the tool, if that is
-     * by less than a hundredth of its edges, and caught in the next step. Collective.
+     * Releases, of the nodes that are still under tension when all else has converged, those that
+     * pull most: they were released and caught again in this step. Friction that comes and goes
+     * with a node may allow neither state of it. From the second release on in a step such a node
+     * touches without friction, and from the third on it is left in the tool, if that is by less
+     * than a hundredth of its edges, and caught in the next step. Collective.
      * @return number of locally owned nodes released
      */
     unsigned int release_worst(const Field &scale);
@@ -89,6 +90,7 @@ namespace axiforge::solvers
       unsigned int           tool = no_tool; ///< no_tool: the edge does not touch
       std::array<bool, 3>    touches{};
       std::array<Vector2, 3> normal;    ///< of the face that the middle is on
+      std::array<bool, 3>    rubs{};    ///< friction acts there
       std::array<double, 3>  weight{};  ///< nodal (Simpson) weights, 1 in all on a whole edge
       std::array<double, 3>  measure{}; ///< area that each node stands for [mm^2]
     };
@@ -108,6 +110,12 @@ namespace axiforge::solvers
     /// What a concave tool adds to the stiffness of a node along its surface [N s/mm]: as the node
     /// slides, the reaction turns back (doc/theory.md, (18a)). 0 at nodes with two conditions.
     double turning_stiffness(unsigned int b, double time_step) const;
+
+    /// Whether friction acts on a node that touches: not on one that goes to and fro without end.
+    bool rubs(unsigned int b) const
+    {
+      return !slides[b];
+    }
 
     /// Velocity of a tool during the step [mm/s].
     Vector2 tool_velocity(unsigned int tool) const
@@ -141,6 +149,7 @@ namespace axiforge::solvers
     const scene::Scene       &scene;
     const State              &state;
     std::vector<unsigned int> n_releases; ///< of each boundary node in this step
+    std::vector<bool>         slides;     ///< without friction: released, caught and released again
     std::vector<double>       left_in;    ///< how deep a free node may be in a tool [mm]
     std::vector<double>       curvature;  ///< of the first tool at each boundary node [1/mm]
     std::vector<Vector2>      tool_velocities;
