@@ -260,29 +260,25 @@ namespace axiforge::meshing
   }
 
 
-  double Outline::penetration(const State &state, const scene::Scene &scene)
+  double Outline::penetration(const State &state, const scene::Scene &scene, const double time)
   {
+    std::vector<Vector2> shift;
+    for (const scene::Tool &tool : scene.tools)
+      shift.push_back(tool.motion.displacement(time));
     double largest = 0;
     for (const BoundaryEdge &edge : state.tables.edges)
       {
         if (!edge.owned || is_straight(edge.id))
-          continue;
-        bool touches_any = false;
-        for (const unsigned int b : edge.boundary_nodes)
-          touches_any |= state.contacts[b].active();
-        if (!touches_any)
           continue;
         OutlinePiece piece;
         for (unsigned int a = 0; a < 3; ++a)
           piece.x[a] = state.node_position(edge.nodes[a]);
         const double length = piece.x[0].distance(piece.x[2]) + piece.x[2].distance(piece.x[1]);
         for (const double xi : { 0.2, 0.4, 0.6, 0.8 })
-          for (const scene::Tool &tool : scene.tools)
+          for (unsigned int i = 0; i < shift.size(); ++i)
             {
               std::array<tools::Contact, 2> found;
-              if (tool.profile.find(
-                      Point(piece.position(xi) - tool.motion.displacement(state.time)), 0, found) >
-                  0)
+              if (scene.tools[i].profile.find(Point(piece.position(xi) - shift[i]), 0, found) > 0)
                 largest = std::max(largest, -found[0].gap / length);
             }
       }

@@ -35,6 +35,10 @@ namespace axiforge::meshing
     constexpr double smallest_division = 0.3;
 
 
+    /// A step in which an edge comes to pass through a tool by more than this is not taken
+    /// [length]: the surface has gone round a corner that the mesh does not see.
+    constexpr double deepest_passage = 0.1;
+
     /// Edge length over sqrt(area / cells): gmsh's meshes have 1.3 times the cells of a square grid
     /// (324 wanted: 400 to 440 made).
     constexpr double size_for_cells = 1.14;
@@ -296,12 +300,28 @@ namespace axiforge::meshing
         part < std::min(smallest_division, worse_jacobian * record.division))
       return fmt::format("a touching edge is divided at {:.3g} of its length", part);
     // A depth that comes back a few steps after a new mesh is what edges of this size leave.
-    const double depth = Outline::penetration(state, scene);
+    const double depth = Outline::penetration(state, scene, state.time);
     const double since = state.step - record.last_attempt;
     const double again = record.last_attempt > 0 ? 1 + patience / since : 1;
     if (depth >
         std::max(again * limits.largest_penetration, worse_penetration * record.penetration))
       return fmt::format("an edge passes through a tool by {:.3g} of its length", depth);
+    return "";
+  }
+
+
+  Soundness soundness(const scene::Scene &scene, const State &state, const double time)
+  {
+    return { measure(state).smallest_vertex_jacobian, Outline::penetration(state, scene, time) };
+  }
+
+
+  std::string Soundness::lost_since(const Soundness &before) const
+  {
+    if (vertex_jacobian < std::min(0., before.vertex_jacobian))
+      return fmt::format("a cell turns over at a vertex (Jacobian {:.3g})", vertex_jacobian);
+    if (penetration > std::max(deepest_passage, worse_penetration * before.penetration))
+      return fmt::format("an edge passes through a tool by {:.3g} of its length", penetration);
     return "";
   }
 
@@ -368,7 +388,7 @@ namespace axiforge::meshing
     record.strain_jump += result.strain_jump;
     record.jacobian        = after.smallest_jacobian;
     record.vertex_jacobian = after.smallest_vertex_jacobian;
-    record.penetration     = Outline::penetration(state, scene);
+    record.penetration     = Outline::penetration(state, scene, state.time);
     record.division        = Outline::least_division(state);
     return result;
   }

@@ -20,6 +20,13 @@ namespace axiforge::meshing
     constexpr double facing = -0.5;
 
 
+    /// A corner of a tool is sharp if its sides enclose more than this [rad].
+    constexpr double sharp_corner = M_PI / 6;
+
+    /// Cells at such a corner are so many times smaller.
+    constexpr double corner_refinement = 3;
+
+
     bool is_mirror(const Outline::Sample &sample)
     {
       return sample.id == axis_id || sample.id == symmetry_id;
@@ -95,6 +102,90 @@ namespace axiforge::meshing
     }
 
 
+    /// The nearest symmetry line as a tool's surface would be: half of the gap lies behind it.
+    bool nearest_symmetry(const Samples &samples, const Point &x, double &gap, Vector2 &normal)
+    {
+      gap = std::numeric_limits<double>::max();
+      for (const auto &loop : samples)
+        for (std::size_t i = 0; i < loop.size(); ++i)
+          if (const Outline::Sample &a = loop[i]; a.id == symmetry_id)
+            if (const double distance = std::abs((x - a.x) * a.inward); distance < gap)
+              {
+                gap    = distance;
+                normal = a.inward;
+              }
+      return gap < std::numeric_limits<double>::max();
+    }
+
+
+    /// Where the surface comes to a gap between tools (of a flash, of the wall of a cup), so many
+    /// cells across the gap.
+    void demand_by_gaps(const Samples      &samples,
+                        const scene::Scene &scene,
+                        const double        time,
+                        const double        cells,
+                        SizeField          &field)
+    {
+      struct Side
+      {
+        double  gap;
+        Vector2 normal;
+      };
+      std::vector<Side> sides;
+      for (const auto &loop : samples)
+        for (const Outline::Sample &sample : loop)
+          {
+            if (is_mirror(sample))
+              continue;
+            sides.clear();
+            for (const scene::Tool &tool : scene.tools)
+              {
+                std::array<tools::Contact, 2> found;
+                const unsigned int            n =
+                    tool.profile.find(Point(sample.x - tool.motion.displacement(time)),
+                                      cells * field.largest(), found);
+                for (unsigned int i = 0; i < n; ++i)
+                  sides.push_back({ std::max(0., found[i].gap), found[i].normal });
+              }
+            Side symmetry;
+            if (nearest_symmetry(samples, sample.x, symmetry.gap, symmetry.normal))
+              {
+                for (Side &side : sides)
+                  if (side.normal * symmetry.normal < facing)
+                    field.demand(sample.x, 2 * (side.gap + symmetry.gap) / cells);
+              }
+            for (unsigned int i = 0; i < sides.size(); ++i)
+              for (unsigned int j = 0; j < i; ++j)
+                if (sides[i].normal * sides[j].normal < facing)
+                  field.demand(sample.x, (sides[i].gap + sides[j].gap) / cells);
+          }
+    }
+
+
+    /// Sharp convex corners of tools that the workpiece goes round, or is about to.
+    void demand_by_corners(const Samples      &samples,
+                           const scene::Scene &scene,
+                           const double        time,
+                           SizeField          &field)
+    {
+      for (const scene::Tool &tool : scene.tools)
+        for (const tools::Profile::Corner &corner : tool.profile.corners())
+          {
+            if (corner.turn > -sharp_corner)
+              continue;
+            const Point x       = corner.place + tool.motion.displacement(time);
+            double      nearest = std::numeric_limits<double>::max();
+            for (const auto &loop : samples)
+              for (const Outline::Sample &sample : loop)
+                if (!is_mirror(sample))
+                  nearest = std::min(nearest, sample.x.distance(x));
+            if (nearest < field.largest())
+              field.demand(x,
+                           field.largest() / corner_refinement + scene.remeshing.growth * nearest);
+          }
+    }
+
+
     /// Cells with more than their share of the error get smaller: the error of a cell goes with
     /// its size to the power of 2 p + 2, p = 1 for Q2 elements where the solution is no smoother
     /// than it is at the edge of a tool.
@@ -135,8 +226,12 @@ namespace axiforge::meshing
         field.demand(end, size / wanted.contact_refinement);
     if (wanted.edges_per_right_angle > 0)
       demand_by_curvature(samples, scene, time, field);
+    demand_by_corners(samples, scene, time, field);
     if (wanted.cells_across > 0)
-      demand_by_thickness(samples, wanted.cells_across, field);
+      {
+        demand_by_gaps(samples, scene, time, wanted.cells_across, field);
+        demand_by_thickness(samples, wanted.cells_across, field);
+      }
     if (wanted.error_refinement > 1)
       demand_by_error(old, wanted.error_refinement, field);
     return field;

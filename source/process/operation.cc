@@ -22,6 +22,10 @@ namespace axiforge::process
 {
   namespace
   {
+    /// Element sizes over the usual one that are tried in turn where that one does not help.
+    constexpr double size_factors[] = { 1, 0.8, 0.65, 1.25 };
+
+
     /// A new mesh and with it a new solver, if the mesh could be made.
     bool remesh(const scene::Scene                   &scene,
                 State                                &state,
@@ -55,11 +59,10 @@ namespace axiforge::process
                                     const bool                            is_fresh,
                                     const std::string                    &failure)
     {
-      constexpr unsigned int repeats   = 4;
-      constexpr double       factors[] = { 1, 0.8, 0.65, 1.25 };
-      unsigned int           n_meshes  = is_fresh ? 1 : 0;
-      std::string            reason    = failure;
-      for (const double factor : factors)
+      constexpr unsigned int repeats  = 4;
+      unsigned int           n_meshes = is_fresh ? 1 : 0;
+      std::string            reason   = failure;
+      for (const double factor : size_factors)
         {
           if (is_fresh && factor == 1)
             continue; // it would be the same mesh
@@ -73,7 +76,7 @@ namespace axiforge::process
           try
             {
               return advance(scene, state, *solver, choose_step_size(scene, state, last), last,
-                             repeats);
+                             repeats, true);
             }
           catch (const ComputationError &error)
             {
@@ -105,14 +108,16 @@ namespace axiforge::process
       if constexpr (!optional_features)
         return advance(scene, state, *solver, choose_step_size(scene, state, last), last);
       if (const std::string reason = meshing::reason_to_remesh(scene, state); !reason.empty())
-        remesh(scene, state, solver, progress, reason);
+        for (const double factor : size_factors)
+          if (remesh(scene, state, solver, progress, reason, factor))
+            break;
       if (!scene.remeshing.enabled)
         return advance(scene, state, *solver, choose_step_size(scene, state, last), last);
       const bool is_fresh = state.step > 0 && state.remeshing.last_attempt == state.step;
       try
         {
           return advance(scene, state, *solver, choose_step_size(scene, state, last), last,
-                         is_fresh ? repeats_on_fresh_mesh : repeats_before_remeshing);
+                         is_fresh ? repeats_on_fresh_mesh : repeats_before_remeshing, true);
         }
       catch (const ComputationError &error)
         {

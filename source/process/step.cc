@@ -8,6 +8,7 @@
 #include <axiforge/base/errors.h>
 #include <axiforge/base/features.h>
 #include <axiforge/base/phases.h>
+#include <axiforge/meshing/remesh.h>
 #include <axiforge/process/accuracy.h>
 #include <axiforge/process/end_condition.h>
 #include <axiforge/process/step.h>
@@ -285,7 +286,8 @@ namespace axiforge::process
                      solvers::FlowSolver &solver,
                      const double         wanted,
                      const StepRecord    &last,
-                     const unsigned int   most_repeats)
+                     const unsigned int   most_repeats,
+                     const bool           keep_sound)
   {
     // After steps that had to be shortened the length comes back by and by.
     double time_step =
@@ -316,11 +318,14 @@ namespace axiforge::process
               state.position = before;
               state.position.update_ghost_values();
             };
-            Measures size;
-            double   fill = 0;
+            Measures           size;
+            double             fill = 0;
+            meshing::Soundness moved{ 1, 0 };
             try
               {
-                size                = measure(state, &before);
+                size = measure(state, &before);
+                if (keep_sound)
+                  moved = meshing::soundness(scene, state, state.time + time_step);
                 const double radius = scene.process.fill_radius;
                 if (radius > 0)
                   fill = fill_fraction(scene, state, radius, state.time + time_step);
@@ -331,7 +336,12 @@ namespace axiforge::process
                 throw;
               }
             take_back();
-            if (size.smallest_jacobian > 0)
+            if (size.smallest_jacobian <= 0)
+              result.failure = fmt::format("a cell near r = {:.4g} mm, z = {:.4g} mm turns over",
+                                           size.worst_place[0], size.worst_place[1]);
+            else if (keep_sound)
+              result.failure = moved.lost_since(meshing::soundness(scene, state, state.time));
+            if (result.failure.empty())
               {
                 StepRecord record = result.record;
                 record.step       = state.step + 1;
@@ -369,8 +379,6 @@ namespace axiforge::process
                 record.times                    = times;
                 return record;
               }
-            result.failure = fmt::format("a cell near r = {:.4g} mm, z = {:.4g} mm turns over",
-                                         size.worst_place[0], size.worst_place[1]);
           }
         ++repeats;
         time_step /= 2;

@@ -117,7 +117,7 @@ namespace axiforge::meshing
     double area() const;
 
     /// Largest depth of an edge inside a tool between its nodes, over the length of the edge.
-    static double penetration(const State &state, const scene::Scene &scene);
+    static double penetration(const State &state, const scene::Scene &scene, double time);
 
     /// The smaller part, over the whole, that the middle node of a touching edge divides its chord
     /// into: the least of all such edges. At 1/4 the parabola begins to turn back on itself.

@@ -16,6 +16,19 @@ namespace axiforge::meshing
    */
   std::string reason_to_remesh(const scene::Scene &scene, const State &state);
 
+  /// Whether the mesh still tells the shape of the workpiece, and that of the tools beside it.
+  struct Soundness
+  {
+    double vertex_jacobian; ///< smallest at a vertex: below 0 the outline folds over there
+    double penetration;     ///< largest depth of an edge inside a tool, over its length
+
+    /// What a step has spoilt that a new mesh before it would have kept; empty: nothing.
+    std::string lost_since(const Soundness &before) const;
+  };
+
+  /// @param time of the tools [s]. Collective.
+  Soundness soundness(const scene::Scene &scene, const State &state, double time);
+
   /// What a remeshing did.
   struct RemeshResult
   {

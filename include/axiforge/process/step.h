@@ -34,6 +34,7 @@ namespace axiforge::process
    * convergence, a cell that would turn over) is repeated with half its length; the step is at most
    * half as long again as the last one.
    * @param most_repeats fewer than usual if there is something else to try, like a new mesh
+   * @param keep_sound the step fails, too, if it spoils the mesh (meshing::Soundness)
    * @throws StepError that says where, at which time and stroke, and what to try
    */
   StepRecord advance(const scene::Scene  &scene,
@@ -41,5 +42,6 @@ namespace axiforge::process
                      solvers::FlowSolver &solver,
                      double               time_step,
                      const StepRecord    &last         = StepRecord(),
-                     unsigned int         most_repeats = 40);
+                     unsigned int         most_repeats = 40,
+                     bool                 keep_sound   = false);
 } // namespace axiforge::process
