@@ -20,6 +20,10 @@ namespace axiforge::meshing
     constexpr double facing = -0.5;
 
 
+    /// Two tools make a corner that free surface fills if their normals enclose more than 60
+    /// degrees.
+    constexpr double corner_facing = 0.5;
+
     /// A corner of a tool is sharp if its sides enclose more than this [rad].
     constexpr double sharp_corner = M_PI / 6;
 
@@ -118,8 +122,8 @@ namespace axiforge::meshing
     }
 
 
-    /// Where the surface comes to a gap between tools (of a flash, of the wall of a cup), so many
-    /// cells across the gap.
+    /// Where the surface comes to a gap between tools (of a flash, of the wall of a cup), or to the
+    /// corner that two of them make, so many cells across.
     void demand_by_gaps(const Samples      &samples,
                         const scene::Scene &scene,
                         const double        time,
@@ -156,7 +160,7 @@ namespace axiforge::meshing
               }
             for (unsigned int i = 0; i < sides.size(); ++i)
               for (unsigned int j = 0; j < i; ++j)
-                if (sides[i].normal * sides[j].normal < facing)
+                if (sides[i].normal * sides[j].normal < (sample.tool < 0 ? corner_facing : facing))
                   field.demand(sample.x, (sides[i].gap + sides[j].gap) / cells);
           }
     }

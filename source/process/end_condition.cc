@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <algorithm>
+#include <cmath>
 
 #include <axiforge/process/end_condition.h>
+#include <axiforge/state/state.h>
 
 namespace axiforge::process
 {
@@ -37,6 +39,15 @@ namespace axiforge::process
   }
 
 
+  bool is_full(const scene::Scene &scene, const StepRecord &record, const double share)
+  {
+    return scene.driving_tool != no_tool && std::isfinite(record.time_to_fill) &&
+           record.time_to_fill *
+                   scene.tools[scene.driving_tool].motion.velocity(record.time).norm() <=
+               share * record.stroke;
+  }
+
+
   std::string ended_by(const scene::Scene &scene, const StepRecord &record)
   {
     const Limits limits = passed(scene, record);
@@ -46,6 +57,8 @@ namespace axiforge::process
       return "height";
     if (limits.fill >= -end_tolerance)
       return "fill";
+    if (is_full(scene, record, filled))
+      return "full";
     if (record.time >= scene.end_time() * (1 - 1e-12))
       return scene.process.end_stroke > 0 && record.stroke >= scene.process.end_stroke * (1 - 1e-9)
                  ? "stroke"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <algorithm>
+#include <iostream>
 #include <memory>
 #include <new>
 
@@ -219,6 +220,16 @@ namespace axiforge::process
     }
 
 
+    void tell_full(const scene::Scene &scene, const State &state, const bool quiet)
+    {
+      if (dealii::Utilities::MPI::this_mpi_process(state.communicator) == 0)
+        (quiet ? std::cerr : std::cout)
+            << fmt::format("Warning: the die is full at stroke {:.6g} mm: the tools can't close "
+                           "further, and the operation ends there, before stroke {:.6g} mm.\n",
+                           scene.stroke(state.time), scene.stroke(scene.end_time()));
+    }
+
+
     /// A run in which nothing was formed is no result.
     void check_formed(const scene::Scene &scene, const State &state, const double largest_force)
     {
@@ -264,7 +275,17 @@ namespace axiforge::process
         while (ended_by(scene, record).empty() && (stop_after == 0 || record.step < stop_after))
           {
             const Phase phase("steps");
-            record = step(scene, state, solver, progress, record);
+            try
+              {
+                record = step(scene, state, solver, progress, record);
+              }
+            catch (const StepError &)
+              {
+                if (!is_full(scene, record, nearly_filled))
+                  throw;
+                record.time_to_fill = 0;
+                break;
+              }
             estimate_errors(scene, state, record);
             record.remeshings            = state.remeshing.count;
             record.remeshing_volume_jump = state.remeshing.volume_jump;
@@ -286,6 +307,8 @@ namespace axiforge::process
         chain.present.ended_by = ended_by(scene, record);
         if (chain.present.ended_by == "steps" && stop_after == 0)
           throw_out_of_steps(scene, state);
+        if (chain.present.ended_by == "full")
+          tell_full(scene, state, quiet);
         checkpoints.at_end(state, record);
         results.write_fields(state);
         results.finish();

@@ -14,6 +14,7 @@
 #include <axiforge/process/step.h>
 #include <axiforge/state/fill.h>
 #include <axiforge/state/gauges.h>
+#include <axiforge/state/pockets.h>
 
 namespace axiforge::process
 {
@@ -36,6 +37,9 @@ namespace axiforge::process
 
     /// Powers below this share of yield stress times area times speed are those of a body at rest.
     constexpr double least_power = 1e-6;
+
+    /// Share of the time until the die is full that a step may take.
+    constexpr double share_of_filling = 0.5;
 
     /// With a target accuracy a step may be so many times as long as the usual one.
     constexpr double largest_driven = 5;
@@ -254,6 +258,7 @@ namespace axiforge::process
         if (const double rate = governing_rate(state); rate > 0)
           step = std::min(step, limits.largest_strain_increment / rate);
         step = std::min(step, limits.largest_motion * shortest_distortion_time(state));
+        step = std::min(step, share_of_filling * last.time_to_fill);
       }
     if (state.step > 0)
       step = std::min(step, step_for_target(scene, last));
@@ -372,11 +377,13 @@ namespace axiforge::process
                 record.smallest_vertex_jacobian = size.smallest_vertex_jacobian;
                 record.largest_strain           = largest_strain(state);
                 record.gauges                   = read_gauges(scene, state);
-                record.cells                    = state.tables.n_global_cells;
-                record.unknowns                 = state.n_unknowns();
-                record.repeats                  = repeats;
-                record.iterations               = iterations;
-                record.times                    = times;
+                if (optional_features && scene.driving_tool != no_tool && scene.tools.size() > 1)
+                  record.time_to_fill = find_pockets(scene, state).time_to_fill();
+                record.cells      = state.tables.n_global_cells;
+                record.unknowns   = state.n_unknowns();
+                record.repeats    = repeats;
+                record.iterations = iterations;
+                record.times      = times;
                 return record;
               }
           }

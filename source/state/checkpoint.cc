@@ -55,16 +55,17 @@ namespace axiforge
            volume, relative_volume_change, power_tools, power_boundaries, power_plastic,
            power_friction, power_contact, power_volume, power_residual, largest_strain,
            largest_strain_rate, smallest_jacobian, smallest_vertex_jacobian, largest_radius, height,
-           fill, end_force, cells, unknowns, iterations, set_changes, repeats, residual, divergence,
-           condition, times, remeshings, remeshing_volume_jump, remeshing_strain_jump, errors] =
-        object;
+           fill, time_to_fill, end_force, cells, unknowns, iterations, set_changes, repeats,
+           residual, divergence, condition, times, remeshings, remeshing_volume_jump,
+           remeshing_strain_jump, errors] = object;
     // All but the condition, which nothing that follows depends on.
     archive(step, time, time_step, stroke, time_middle, stroke_middle, tools, boundaries, gauges,
             volume, relative_volume_change, power_tools, power_boundaries, power_plastic,
             power_friction, power_contact, power_volume, power_residual, largest_strain,
             largest_strain_rate, smallest_jacobian, smallest_vertex_jacobian, largest_radius,
-            height, fill, end_force, cells, unknowns, iterations, set_changes, repeats, residual,
-            divergence, times, remeshings, remeshing_volume_jump, remeshing_strain_jump, errors);
+            height, fill, time_to_fill, end_force, cells, unknowns, iterations, set_changes,
+            repeats, residual, divergence, times, remeshings, remeshing_volume_jump,
+            remeshing_strain_jump, errors);
   }
 
   template <typename Archive> void visit(Archive &archive, ResultsProgress &object)

@@ -17,7 +17,16 @@ namespace axiforge::process
    */
   double passed_end(const scene::Scene &scene, const StepRecord &record);
 
-  /// What has ended the operation after this step: "force", "height", "fill", "stroke", "time" or
-  /// "steps"; empty: it goes on.
+  /// The die is full if what the driving tool can still go is this share of its stroke.
+  constexpr double filled = 1e-3;
+
+  /// The same where a step has failed, as the last ones before a die is full may do.
+  constexpr double nearly_filled = 2e-3;
+
+  /// Whether the die is full to this share of the stroke.
+  bool is_full(const scene::Scene &scene, const StepRecord &record, double share);
+
+  /// What has ended the operation after this step: "force", "height", "fill", "full" (the die),
+  /// "stroke", "time" or "steps"; empty: it goes on.
   std::string ended_by(const scene::Scene &scene, const StepRecord &record);
 } // namespace axiforge::process

@@ -9,7 +9,7 @@ namespace axiforge
   struct OperationSummary
   {
     std::string  name;
-    std::string  ended_by; ///< stroke, time, force, height, fill, steps
+    std::string  ended_by; ///< stroke, time, force, height, fill, full, steps
     unsigned int steps          = 0;
     double       time           = 0; ///< its own length [s], the dwell not counted
     double       stroke         = 0; ///< [mm]

@@ -77,7 +77,9 @@ namespace axiforge
     double largest_radius           = 0; ///< of the free and touching surface [mm]
     double height                   = 0; ///< of the workpiece [mm]
     double fill                     = 0; ///< share of the cavity, if it is asked for
-    double end_force = 0; ///< of the driving tool at the end of the step, extrapolated [N]
+    /// Until the die is full [s]; infinite where it is open.
+    double time_to_fill = std::numeric_limits<double>::infinity();
+    double end_force    = 0; ///< of the driving tool at the end of the step, extrapolated [N]
 
     unsigned int cells = 0, unknowns = 0, iterations = 0, set_changes = 0, repeats = 0;
     double       residual = 0, divergence = 0;
