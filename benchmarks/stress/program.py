@@ -51,10 +51,11 @@ def geometry_parameters(**values):
 class Run:
     """What came out of one run."""
 
-    def __init__(self, status, message, rows, cpu, leftovers):
+    def __init__(self, status, message, operations, cpu, leftovers):
         self.status = status  # of the program; None: it had to be stopped
         self.message = message
-        self.rows = rows  # of history.csv, {column: number}
+        self.operations = operations  # for each operation the rows of its history.csv, {column: number}
+        self.rows = [row for rows in operations for row in rows]
         self.cpu = cpu  # user and system [s], start and mesh included
         self.leftovers = leftovers  # files that are neither whole nor gone
 
@@ -142,37 +143,40 @@ class Program:
     def close(self):
         shutil.rmtree(self.work, ignore_errors=True)
 
-    def run(self, entries, name=""):
-        """Runs a scene and notes what no scene may do."""
+    def run(self, entries, name="", work=None):
+        """Runs a scene, in a folder of its own if there is one with its files, and notes what no scene may do."""
         self.n_runs += 1
-        scene, folder = self.work / "scene.prm", self.work / "output"
+        work = work or self.work
+        scene, folder = work / "scene.prm", work / "output"
         shutil.rmtree(folder, ignore_errors=True)
         scene.write_text(parameter_text({"Output/Fields": "none", **entries}))
-        environment = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
-        with open(self.work / "screen", "w+") as screen:
+        environment = {**os.environ, "OMP_NUM_THREADS": "1", "OMP_THREAD_LIMIT": "1", "OPENBLAS_NUM_THREADS": "1"}
+        with open(work / "screen", "w+") as screen:
             process = subprocess.Popen(
                 [self.path, scene, "--quiet", "--output", folder],
                 stdin=subprocess.DEVNULL, stdout=screen, stderr=screen, env=environment,
             )
             status, cpu = self.wait(process)
             screen.seek(0)
-            message = screen.read().replace(f"{self.work}/", "")
+            message = screen.read().replace(f"{work}/", "")
         self.cpu += cpu
-        rows, header = [], []
-        history = folder / "history.csv"
-        if history.exists():
+        operations, whole = [], True
+        # A chain has a folder for each of its operations.
+        histories = [folder / "history.csv"] if (folder / "history.csv").exists() else sorted(folder.glob("[0-9]*_*/history.csv"))
+        for history in histories:
             with open(history, newline="") as file:
                 lines = list(csv.reader(file))
-            header = lines[0]
-            rows = [dict(zip(header, map(float, line))) for line in lines[1:] if len(line) == len(header)]
-            whole = len(rows) == len(lines) - 1 and history.read_bytes().endswith(b"\n")
-        else:
+            rows = [dict(zip(lines[0], map(float, line))) for line in lines[1:] if len(line) == len(lines[0])]
+            whole = whole and len(rows) == len(lines) - 1 and history.read_bytes().endswith(b"\n")
+            if rows:
+                operations.append(rows)
+        if not histories:
             whole = status != 0
         # Files are written under another name and renamed: none may stay under that name.
         leftovers = [str(file.name) for file in folder.rglob("*") if re.search(r"tmp|part|~$", file.name)] if folder.exists() else []
         if not whole:
             leftovers.append("history.csv")
-        run = Run(status, message, rows, cpu, leftovers)
+        run = Run(status, message, operations, cpu, leftovers)
         fault = self.broken_rule(run)
         if fault:
             self.faults.append((name, fault, parameter_text(entries)))

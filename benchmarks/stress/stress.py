@@ -19,7 +19,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import program as programs  # noqa: E402
 import tables  # noqa: E402
 
-GROUPS = ("penalty", "scaling", "invariance", "friction", "material", "steps", "shapes", "random_scenes")
+GROUPS = ("penalty", "scaling", "invariance", "friction", "material", "steps", "shapes", "random_scenes",
+          "industrial")
 
 
 class Session:

@@ -16,6 +16,7 @@
 #include <axiforge/meshing/size_demands.h>
 #include <axiforge/meshing/transfer.h>
 #include <axiforge/meshing/volume.h>
+#include <axiforge/state/pockets.h>
 
 namespace axiforge::meshing
 {
@@ -299,6 +300,10 @@ namespace axiforge::meshing
     if (const double part = Outline::least_division(state);
         part < std::min(smallest_division, worse_jacobian * record.division))
       return fmt::format("a touching edge is divided at {:.3g} of its length", part);
+    if (limits.cells_across > 0 &&
+        (record.last_attempt == 0 || state.step >= record.last_attempt + patience) &&
+        edge_over_gap(scene, state))
+      return "an edge spans the mouth of a gap between tools";
     // A depth that comes back a few steps after a new mesh is what edges of this size leave.
     const double depth = Outline::penetration(state, scene, state.time);
     const double since = state.step - record.last_attempt;

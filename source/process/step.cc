@@ -354,11 +354,14 @@ namespace axiforge::process
                 record.fill       = fill;
                 set_end_forces(scene, time_step, last, record);
                 if (const double passed = passed_end(scene, record);
-                    passed > end_tolerance && cuts++ < most_cuts)
+                    passed > end_tolerance && time_step > 2 * shortest && cuts++ < most_cuts)
                   {
                     // Beyond the end of the operation: the secant's rule from the step before.
+                    // Where the force jumps over its limit the shortest step has to do.
                     const double before_it = state.step > 0 ? passed_end(scene, last) : -1;
-                    time_step *= std::clamp(-before_it / (passed - before_it), 0.05, 0.95);
+                    time_step =
+                        std::max(shortest, time_step * std::clamp(-before_it / (passed - before_it),
+                                                                  0.05, 0.95));
                     continue;
                   }
                 // The tools go straight from start to end of a step.

@@ -75,10 +75,12 @@ namespace axiforge::scene
         "workpiece, used when no step is given. 0.01 keeps the time error of the force "
         "near 1e-4.",
         Patterns::Double(1e-6, 0.5));
-    prm.add_parameter("Largest strain increment", largest_strain_increment,
-                      "Largest effective strain a point may gain in one step. It guards against a "
-                      "local burst; the reduction per step is the usual limit.",
-                      Patterns::Double(1e-6));
+    prm.add_parameter(
+        "Largest strain increment", largest_strain_increment,
+        "Largest effective strain that the workpiece may gain in one step, but for the "
+        "points with 1 % of the plastic power. It guards against a local burst; the "
+        "reduction per step is the usual limit.",
+        Patterns::Double(1e-6));
     prm.add_parameter(
         "Largest motion", largest_motion,
         "Largest relative motion of the nodes of a cell in one step, as a share of the "

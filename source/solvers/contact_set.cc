@@ -33,6 +33,10 @@ namespace axiforge::solvers
     /// it.
     constexpr double at_once = 0.5;
 
+    /// An end of a profile that lies on another tool to this share of the size lets nothing
+    /// through.
+    constexpr double sealing = 1e-5;
+
     /// Share of a tool's way in a step by which it has to come nearer in order to press.
     constexpr double approach = 1e-6;
 
@@ -82,6 +86,36 @@ namespace axiforge::solvers
   {
     for (unsigned int i = 0; i < 2; ++i)
       if (nodes[b].tool[i] == tool && nodes[b].face[i] == face)
+        return true;
+    return false;
+  }
+
+
+  void ContactSet::find_sealed_ends(const std::vector<Vector2> &shift)
+  {
+    sealed_ends.resize(scene.tools.size());
+    for (unsigned int tool = 0; tool < scene.tools.size(); ++tool)
+      for (const Point &end : scene.tools[tool].profile.free_ends())
+        for (unsigned int other = 0; other < scene.tools.size(); ++other)
+          {
+            std::array<tools::Contact, 2> found;
+            const double                  close = sealing * scene.size;
+            if (other != tool &&
+                scene.tools[other].profile.find(end + shift[tool] - shift[other], close, found) >
+                    0 &&
+                std::abs(found[0].gap) <= close)
+              {
+                sealed_ends[tool].push_back(end);
+                break;
+              }
+          }
+  }
+
+
+  bool ContactSet::is_sealed(const unsigned int tool, const Point &end) const
+  {
+    for (const Point &sealed : sealed_ends[tool])
+      if (sealed.distance(end) <= catch_distance)
         return true;
     return false;
   }
@@ -164,6 +198,8 @@ namespace axiforge::solvers
         tool_velocities[tool] =
             (shift[tool] - scene.tools[tool].motion.displacement(state.time)) / time_step;
       }
+    if (sealed_ends.empty())
+      find_sealed_ends(shift);
 
     struct Candidate
     {
@@ -188,16 +224,22 @@ namespace axiforge::solvers
               contact.tool[0] == tool || contact.tool[1] == tool ||
               (node.axis_neighbour != no_tool && nodes[node.axis_neighbour].tool[0] == tool);
           std::array<tools::Contact, 2> found;
-          const unsigned int            n =
-              scene.tools[tool].profile.find(x - shift[tool], was_active ? reach : 0, found);
+          const unsigned int            n = scene.tools[tool].profile.find(
+                         x - shift[tool], was_active || !sealed_ends[tool].empty() ? reach : 0, found);
           for (unsigned int i = 0; i < n && n_touching < touching.size(); ++i)
             {
-              const bool held = i == 0 ? was_active : in_concave_pair(b, tool, found[i].face);
-              if (found[i].past_end > catch_distance) // the profile ends before: nothing is there
-                continue;
-              if (held || found[i].gap < -std::max(catch_distance, left_in[b]))
-                touching[n_touching++] = { tool, found[i].face, found[i].gap, found[i].normal,
-                                           found[i].curvature };
+              const bool held   = i == 0 ? was_active : in_concave_pair(b, tool, found[i].face);
+              double     gap    = found[i].gap;
+              Vector2    normal = found[i].normal;
+              if (found[i].past_end > catch_distance)
+                {
+                  if (!is_sealed(tool, found[i].closest))
+                    continue; // the profile ends before: nothing is there
+                  normal = found[i].end_normal;
+                  gap    = (x - shift[tool] - found[i].closest) * normal;
+                }
+              if (held || gap < -std::max(catch_distance, left_in[b]))
+                touching[n_touching++] = { tool, found[i].face, gap, normal, found[i].curvature };
             }
         }
       for (unsigned int i = 1; i < n_touching;

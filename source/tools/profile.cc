@@ -405,6 +405,19 @@ namespace axiforge::tools
     return result;
   }
 
+  std::vector<Point> Profile::free_ends() const
+  {
+    std::vector<Point> result;
+    for (const Chain &chain : chains)
+      {
+        if (!chain.closed && chain.junctions.front().free_end)
+          result.push_back(chain.segments.front().begin());
+        if (!chain.closed && chain.junctions.back().free_end)
+          result.push_back(chain.segments.back().end());
+      }
+    return result;
+  }
+
   unsigned int Profile::n_faces() const
   {
     return face_count;

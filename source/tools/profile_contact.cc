@@ -94,7 +94,10 @@ namespace axiforge::tools
     const Junction &junction = chain.junction(nearest.segment, foot.parameter > 0.5);
     const bool      outside  = junction.free_end || offset * junction.bisector >= 0;
     if (junction.free_end)
-      contact.past_end = std::abs(offset * segment.tangent(foot.parameter));
+      {
+        contact.past_end   = std::abs(offset * segment.tangent(foot.parameter));
+        contact.end_normal = contact.normal;
+      }
     if (!outside && junction.turn > corner_angle)
       {
         contact.gap = offset * contact.normal; // behind a concave corner: the continued flank

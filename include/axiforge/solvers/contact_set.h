@@ -144,14 +144,22 @@ namespace axiforge::solvers
     /// Takes a node off what pulls it. @return whether something does
     bool release(unsigned int b, const Field &scale);
 
+    /// Ends of profiles that lie on another tool at the end of the step: the profile goes on
+    /// straight there, so that nothing slips through the corner that the two make.
+    /// @param shift of the tools [mm]
+    void find_sealed_ends(const std::vector<Vector2> &shift);
+
+    bool is_sealed(unsigned int tool, const Point &end) const;
+
     bool in_concave_pair(unsigned int b, unsigned int tool, unsigned int face) const;
 
-    const scene::Scene       &scene;
-    const State              &state;
-    std::vector<unsigned int> n_releases; ///< of each boundary node in this step
-    std::vector<bool>         slides;     ///< without friction: released, caught and released again
-    std::vector<double>       left_in;    ///< how deep a free node may be in a tool [mm]
-    std::vector<double>       curvature;  ///< of the first tool at each boundary node [1/mm]
+    const scene::Scene             &scene;
+    const State                    &state;
+    std::vector<unsigned int>       n_releases;  ///< of each boundary node in this step
+    std::vector<std::vector<Point>> sealed_ends; ///< of each tool, in its own coordinates [mm]
+    std::vector<bool>         slides;    ///< without friction: released, caught and released again
+    std::vector<double>       left_in;   ///< how deep a free node may be in a tool [mm]
+    std::vector<double>       curvature; ///< of the first tool at each boundary node [1/mm]
     std::vector<Vector2>      tool_velocities;
     std::vector<unsigned int> condition; ///< per boundary id
     Field  length; ///< half the lengths of the edges at each node, in the first component [mm]

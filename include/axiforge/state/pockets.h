@@ -19,9 +19,13 @@ namespace axiforge
   };
 
   /**
-   * Looks from each free node along the outward normal for the tool it will meet. Surface that
-   * meets none within a quarter of the workpiece's size is open: the side of a cylinder that is
-   * upset, the tip of a flash. Named parts of the boundary count as open. Collective.
+   * Looks from places on the free edges along the outward normal for the tool it will meet. Surface
+   * that meets none within a quarter of the workpiece's size is open: the side of a cylinder that
+   * is upset, the tip of a flash. Named parts of the boundary count as open. Collective.
    */
   Pockets find_pockets(const scene::Scene &scene, const State &state);
+
+  /// Whether an edge from one tool to another spans the mouth of a gap that is open behind: the
+  /// mesh does not see the flash that is to come. Collective.
+  bool edge_over_gap(const scene::Scene &scene, const State &state);
 } // namespace axiforge

@@ -21,6 +21,7 @@ namespace axiforge::tools
     unsigned int face       = 0; ///< number of the smooth part of the outline
     double       arc_length = 0; ///< of `closest` along its chain [mm]
     double       past_end   = 0; ///< way beyond a free end of the profile, along it [mm]
+    Vector2      end_normal;     ///< that the profile has at its free end, if past_end > 0
   };
 
   /// The deepest of some points inside a tool.
@@ -105,6 +106,9 @@ namespace axiforge::tools
       double turn;  ///< angle between the tangents [rad], positive where the tool is concave
     };
     std::vector<Corner> corners() const;
+
+    /// Ends of the chains away from the axis [mm], in the tool's own coordinates.
+    std::vector<Point> free_ends() const;
 
     unsigned int n_faces() const;
     unsigned int n_chains() const;
