@@ -24,6 +24,9 @@ namespace axiforge::solvers
     /// iterations".
     constexpr unsigned int most_changing = 3;
 
+    /// An increment with which a cell turns over within the step is halved so many times at most.
+    constexpr unsigned int most_halvings = 8;
+
     /// Passes over the lagged strain rate of friction in the first step, which has no step before
     /// it.
     constexpr unsigned int first_step_passes = 3;
@@ -145,7 +148,18 @@ namespace axiforge::solvers
     for (unsigned int iteration = 0;; ++iteration)
       {
         Timer timer;
-        if (!evaluate_cells(move_dual))
+        bool  sound = evaluate_cells(move_dual);
+        for (unsigned int i = 0; !sound && iteration > 0 && i < most_halvings; ++i)
+          {
+            // Nodes that contact has let go may shoot through a cell: take half of the increment
+            // back.
+            increment *= 0.5;
+            velocity -= increment;
+            velocity.update_ghost_values();
+            failure.clear();
+            sound = evaluate_cells(false);
+          }
+        if (!sound)
           break;
         move_dual = false;
         add_external_forces();
