@@ -26,8 +26,19 @@ namespace axiforge::solvers
     /// A node may be released so often in a step as soon as it pulls; then only at convergence.
     constexpr unsigned int free_releases = 2;
 
+    /// A node that is pressed by more than this share of the flow stress rubs, whatever it did
+    /// before.
+    constexpr double pressed = 0.1;
+
+    /// It is given its friction back so often in a step.
+    constexpr unsigned int most_restored = 2;
+
     /// Share of its edges by which a node that neither holds nor stays out may be in a tool.
     constexpr double deepest_left_in = 0.01;
+
+    /// The same over the way of the tools in the step: with more a short step would lose the
+    /// contact.
+    constexpr double slowest_catch = 0.05;
 
     /// Nodes that pull with more than this share of what the worst one pulls with are released with
     /// it.
@@ -53,11 +64,13 @@ namespace axiforge::solvers
       , state(state)
       , n_releases(nodes.size(), 0)
       , slides(nodes.size(), false)
+      , n_restored(nodes.size(), 0)
       , left_in(nodes.size(), 0.)
       , curvature(nodes.size(), 0.)
       , tool_velocities(scene.tools.size())
       , reach(0.05 * scene.size)
       , catch_distance(tolerance::caught * scene.size)
+      , rubbing_pressure(pressed * scene.material.flow_stress(0, scene.characteristic_rate).value)
       , least_tension(tension_of_workpiece * scene.size * scene.size *
                       scene.material.flow_stress(0, scene.characteristic_rate).value)
   {
@@ -190,6 +203,7 @@ namespace axiforge::solvers
     const Phase  phase("contact search");
     const double end       = state.time + time_step;
     unsigned int n_changes = 0;
+    way                    = scene.characteristic_speed * time_step;
 
     std::vector<Vector2> shift(scene.tools.size());
     for (unsigned int tool = 0; tool < scene.tools.size(); ++tool)
@@ -365,8 +379,9 @@ namespace axiforge::solvers
         // it is left in the tool a little.
         slides[b] = ++n_releases[b] > 1;
         if (n_releases[b] > free_releases)
-          left_in[b] =
-              deepest_left_in * length.local_element(2 * state.tables.boundary_nodes[b].node);
+          left_in[b] = std::min(deepest_left_in *
+                                    length.local_element(2 * state.tables.boundary_nodes[b].node),
+                                slowest_catch * way);
         contact.reaction = { { 0, 0 } };
       }
     return released;
@@ -398,6 +413,21 @@ namespace axiforge::solvers
     for (unsigned int b = 0; b < nodes.size(); ++b)
       if (tension(b) >= worst * at_once)
         n_changes += release(b, scale) * state.tables.boundary_nodes[b].owned;
+    return n_changes;
+  }
+
+
+  unsigned int ContactSet::restore_friction()
+  {
+    unsigned int n_changes = 0;
+    for (unsigned int b = 0; b < nodes.size(); ++b)
+      if (slides[b] && nodes[b].active() && nodes[b].pressure > rubbing_pressure &&
+          n_restored[b] < most_restored)
+        {
+          slides[b] = false;
+          ++n_restored[b];
+          n_changes += state.tables.boundary_nodes[b].owned;
+        }
     return n_changes;
   }
 

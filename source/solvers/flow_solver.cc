@@ -195,6 +195,8 @@ namespace axiforge::solvers
         changes = MPI::sum(changes, state.communicator);
         if (changes == 0 && converged(norms)) // no reaction may pull
           changes = MPI::sum(contact->release_worst(scale), state.communicator);
+        if (changes == 0 && converged(norms))
+          changes = MPI::sum(contact->restore_friction(), state.communicator);
         if (changes > 0 && converged(norms))
           {
             contact->make_frames(velocity, time_step, frames);

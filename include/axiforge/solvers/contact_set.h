@@ -72,6 +72,10 @@ namespace axiforge::solvers
      */
     unsigned int release_worst(const Field &scale);
 
+    /// Gives friction back to nodes that have lost it on the way but are pressed at convergence.
+    /// @return number of locally owned nodes
+    unsigned int restore_friction();
+
     /**
      * Releases the nodes that the first increment of a step would have to pull back on to their
      * tool: those whose reaction is less than what closing the gap takes that they run into, as
@@ -157,15 +161,18 @@ namespace axiforge::solvers
     const State                    &state;
     std::vector<unsigned int>       n_releases;  ///< of each boundary node in this step
     std::vector<std::vector<Point>> sealed_ends; ///< of each tool, in its own coordinates [mm]
-    std::vector<bool>         slides;    ///< without friction: released, caught and released again
-    std::vector<double>       left_in;   ///< how deep a free node may be in a tool [mm]
-    std::vector<double>       curvature; ///< of the first tool at each boundary node [1/mm]
+    std::vector<bool>         slides;     ///< without friction: released, caught and released again
+    std::vector<unsigned int> n_restored; ///< how often friction has come back
+    std::vector<double>       left_in;    ///< how deep a free node may be in a tool [mm]
+    std::vector<double>       curvature;  ///< of the first tool at each boundary node [1/mm]
     std::vector<Vector2>      tool_velocities;
     std::vector<unsigned int> condition; ///< per boundary id
-    Field  length; ///< half the lengths of the edges at each node, in the first component [mm]
-    Field  area;   ///< that the nodes stand for [mm^2]
-    double reach;  ///< how far an active node is looked for [mm]
-    double catch_distance; ///< gaps below this are round-off [mm]
-    double least_tension;  ///< that counts as one [N]
+    Field  length;  ///< half the lengths of the edges at each node, in the first component [mm]
+    Field  area;    ///< that the nodes stand for [mm^2]
+    double way = 0; ///< of the tools in the step [mm]
+    double reach;   ///< how far an active node is looked for [mm]
+    double catch_distance;   ///< gaps below this are round-off [mm]
+    double rubbing_pressure; ///< from which on a node rubs for sure [MPa]
+    double least_tension;    ///< that counts as one [N]
   };
 } // namespace axiforge::solvers
