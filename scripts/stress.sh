@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 # scripts/stress.sh [GROUP ...] [--short] [--output FOLDER]: stress tests of numerical stability.
 #
-# Groups: penalty scaling invariance friction material steps shapes random_scenes; default all of them, about
-# half an hour of CPU time on one core. Tables go to benchmarks/results/stress; with --short, which takes a
+# Groups: penalty scaling invariance friction material steps shapes random_scenes industrial; default all of
+# them, about an hour of CPU time on one core. Tables go to benchmarks/results/stress; with --short, which takes a
 # minute, nothing is written. doc/stability.md says what came out.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/lib.sh"

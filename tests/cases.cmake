@@ -67,7 +67,7 @@ endif()
 # The short form of the stress tests (doc/stability.md), a case for each group. They need nothing but python3.
 find_program(PYTHON3_PROGRAM python3)
 if(TARGET axiforge AND PYTHON3_PROGRAM)
-  foreach(group penalty scaling invariance friction material steps shapes random_scenes)
+  foreach(group penalty scaling invariance friction material steps shapes random_scenes industrial)
     add_test(NAME stress_${group}
       COMMAND ${PYTHON3_PROGRAM} ${CMAKE_SOURCE_DIR}/benchmarks/stress/stress.py $<TARGET_FILE:axiforge>
         ${group} --short)
