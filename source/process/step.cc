@@ -344,7 +344,7 @@ namespace axiforge::process
             if (size.smallest_jacobian <= 0)
               result.failure = fmt::format("a cell near r = {:.4g} mm, z = {:.4g} mm turns over",
                                            size.worst_place[0], size.worst_place[1]);
-            else if (keep_sound)
+            else if (keep_sound && !moved.lost_since({ 0, 0 }).empty()) // nothing can be lost else
               result.failure = moved.lost_since(meshing::soundness(scene, state, state.time));
             if (result.failure.empty())
               {
