@@ -158,7 +158,7 @@ TEST(Departure, lets_go_what_would_have_to_be_pulled_back)
         force.local_element(2 * node) = -pressed * 100; // the bush presses inwards
       solvers::ContactSet contact(problem.scene, state);
       contact.locate(state.velocity, 1.);
-      contact.update_reactions(force, scale, false);
+      contact.update_reactions(force);
       const unsigned int released = contact.release_departing(scale);
       unsigned int       expected = 0;
       for (unsigned int b = 0; b < state.contacts.size(); ++b)
@@ -170,6 +170,56 @@ TEST(Departure, lets_go_what_would_have_to_be_pulled_back)
         }
       EXPECT_EQ(released, expected);
       EXPECT_EQ(released > 0, pressed < 0.1);
+    }
+}
+
+
+// A pull on all nodes under a platen, as a share of the shear stress that its friction has without
+// pressure. Only where contacts adhere, and only what is less than that, is borne.
+TEST(Adhesion, bears_less_than_the_shear_stress_of_its_friction)
+{
+  const double  yield = 120, k = yield / std::sqrt(3.);
+  const Entries plastic = { "Material/Model = perfectly plastic", "Material/Yield stress = 120" };
+  const std::vector<std::pair<Entries, double>> laws = {
+    { { "Tool upper/Friction/Law = sticking" }, k },
+    { { "Tool upper/Friction/Law = shear", "Tool upper/Friction/Factor = 0.3" }, 0.3 * k },
+    { { "Tool upper/Friction/Law = coulomb", "Tool upper/Friction/Coefficient = 0.3" }, 0 },
+    { { "Tool upper/Friction/Law = none" }, 0 }
+  };
+  for (const auto &[law, bears] : laws)
+    {
+      FlowProblem problem(Entries{ "Tools = upper", "Process/End stroke = 3" } +
+                          workpiece(geometry("cylinder_full.geo"),
+                                    "Radius = 25, Height = 30, RadialCells = 4, AxialCells = 4") +
+                          plastic + tool("upper", geometry("platen.geo"), "Z = 30, Radius = 60") +
+                          moving("upper", -1) + law);
+      State      &state = problem.state;
+      Field       scale, force;
+      scale.reinit(state.velocity);
+      force.reinit(state.velocity);
+      for (const bool adheres : { false, true })
+        for (const double pull : { 0.9 * bears, 1.1 * bears + 1e-3 * k })
+          {
+            solvers::ContactSet contact(problem.scene, state, adheres);
+            contact.locate(state.velocity, 1.);
+            contact.set_pressures(state.position);
+            for (unsigned int b = 0; b < contact.nodes.size(); ++b)
+              for (unsigned int c = 0; c < 2 && contact.nodes[b].active(); ++c)
+                {
+                  const unsigned int node = state.tables.boundary_nodes[b].node;
+                  force.local_element(2 * node + c) =
+                      -pull * contact.node_area(node) * contact.nodes[b].normal[0][c];
+                }
+            contact.update_reactions(force);
+            unsigned int n_touching = 0;
+            for (const NodeContact &node : contact.nodes)
+              n_touching += node.active();
+            ASSERT_EQ(n_touching, 9u) << law.front();
+            const unsigned int released = contact.release_pulled(scale, 0);
+            const bool         borne    = pull == 0 || (adheres && pull < bears);
+            EXPECT_EQ(released, borne ? 0u : 8u) // that on the axis has no area and no pull
+                << law.front() << (adheres ? " adheres" : "") << " pull " << pull;
+          }
     }
 }
 

@@ -85,6 +85,7 @@ TEST(History, EveryColumnShowsItsOwnMember)
   set("power_contact_mW", r.power_contact);
   set("power_volume_mW", r.power_volume);
   set("power_residual_mW", r.power_residual);
+  set("tension_N", r.tension);
   set("largest_strain", r.largest_strain);
   set("largest_strain_rate_per_s", r.largest_strain_rate);
   set("largest_radius_mm", r.largest_radius);

@@ -213,6 +213,8 @@ namespace axiforge::laws
                                   "> 0",
                                   "Give about a thousandth of the usual slip velocity in mm/s");
       }
+    if (law == FrictionKind::sticking)
+      regularisation_velocity_ = characteristic_speed > 0 ? 1e-3 * characteristic_speed : 1.;
     if (law == FrictionKind::smm)
       {
         layer_thickness_ =
@@ -239,6 +241,7 @@ namespace axiforge::laws
         return { 0., 0., 0. };
       case FrictionKind::coulomb:
       case FrictionKind::shear:
+      case FrictionKind::sticking:
         return regularised_sign(cap(point.pressure, point.flow_stress), v, v0);
       case FrictionKind::arctan:
         {
@@ -260,7 +263,6 @@ namespace axiforge::laws
           const double secant = viscosity_ * std::pow(square, 0.5 * (exponent_ - 1.));
           return { secant * v, secant * (v0 * v0 + exponent_ * v * v) / square, secant };
         }
-      case FrictionKind::sticking:
       case FrictionKind::smm:
         break;
       }
@@ -281,6 +283,7 @@ namespace axiforge::laws
       case FrictionKind::tangential_forces:
         return factor_ * shear_yield_stress(flow_stress);
       case FrictionKind::sticking:
+        return shear_yield_stress(flow_stress);
       case FrictionKind::norton:
       case FrictionKind::smm:
         break;

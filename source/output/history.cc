@@ -44,6 +44,7 @@ namespace axiforge::output
                                 { "power_contact_mW", r.power_contact },
                                 { "power_volume_mW", r.power_volume },
                                 { "power_residual_mW", r.power_residual },
+                                { "tension_N", r.tension },
                                 { "largest_strain", r.largest_strain },
                                 { "largest_strain_rate_per_s", r.largest_strain_rate },
                                 { "largest_radius_mm", r.largest_radius },

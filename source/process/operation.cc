@@ -230,6 +230,42 @@ namespace axiforge::process
     }
 
 
+    /// Sees the steps in which contacts pull, see StepRecord::tension, and says so at the end.
+    class TensionWatch
+    {
+    public:
+      void after_step(const StepRecord &record)
+      {
+        ++all;
+        if (!(record.tension > 0))
+          return;
+        ++steps;
+        const double share = record.tension / std::max(largest_force_of(record), record.tension);
+        if (share > largest_share)
+          {
+            largest_share = share;
+            stroke        = record.stroke;
+          }
+      }
+
+      void tell(const State &state, const bool quiet) const
+      {
+        if (steps > 0 && dealii::Utilities::MPI::this_mpi_process(state.communicator) == 0)
+          (quiet ? std::cerr : std::cout)
+              << fmt::format("Warning: in {} of {} contacts pull on the workpiece, with up to "
+                             "{:.2g} % of the die force (at stroke {:.6g} mm; \"tension_N\" in "
+                             "history.csv). Friction that does not vanish with the pressure has no "
+                             "other solution there; with \"Law = coulomb\" it does.\n",
+                             steps, counted(all, "step"), 100 * largest_share, stroke)
+              << std::flush;
+      }
+
+    private:
+      unsigned int all = 0, steps = 0;
+      double       largest_share = 0, stroke = 0;
+    };
+
+
     /// A run in which nothing was formed is no result.
     void check_formed(const scene::Scene &scene, const State &state, const double largest_force)
     {
@@ -261,11 +297,12 @@ namespace axiforge::process
   {
     const unsigned int remeshings_before = state.remeshing.count - chain.present.remeshings;
     auto               solver            = std::make_unique<solvers::FlowSolver>(scene, state);
-    double     largest_force = std::max(chain.present.largest_force, largest_force_of(record));
-    StepTimes  sum;
-    Progress   progress(scene, quiet);
-    FoldWatch  folds(scene, quiet);
-    TableWatch table(scene, quiet);
+    double       largest_force = std::max(chain.present.largest_force, largest_force_of(record));
+    StepTimes    sum;
+    Progress     progress(scene, quiet);
+    FoldWatch    folds(scene, quiet);
+    TableWatch   table(scene, quiet);
+    TensionWatch tension;
     progress.start(state);
     checkpoints.enter(scene, chain, results);
     try
@@ -299,6 +336,7 @@ namespace axiforge::process
             if (on_step)
               on_step(scene, record);
             table.after_step(state, record.time_step);
+            tension.after_step(record);
             folds.after_step(state, record);
             progress.mesh(adapt_if_due(scene, state, solver, record));
             if (checkpoints.after_step(state, record))
@@ -313,10 +351,12 @@ namespace axiforge::process
         results.write_fields(state);
         results.finish();
         table.tell(state);
+        tension.tell(state, quiet);
       }
     catch (const ComputationError &error)
       {
         table.tell(state);
+        tension.tell(state, quiet);
         throw ComputationError(error.what() +
                                keep_what_there_is(state, record, results, checkpoints));
       }

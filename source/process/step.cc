@@ -102,6 +102,14 @@ namespace axiforge::process
     }
 
 
+    /// Whether some friction does not vanish with the pressure.
+    bool may_adhere(const scene::Scene &scene)
+    {
+      return std::any_of(scene.tools.begin(), scene.tools.end(),
+                         [](const scene::Tool &tool) { return tool.friction.cap(0, 1) > 0; });
+    }
+
+
     /// Speed [mm/s] that decides the reduction: of the fastest tool now, or that of the scene.
     double fastest(const scene::Scene &scene, const double time)
     {
@@ -298,11 +306,12 @@ namespace axiforge::process
     double time_step =
         last.time_step > 0 ? std::min(wanted, largest_growth * last.time_step) : wanted;
     unsigned int repeats = 0, iterations = 0, cuts = 0;
+    bool         adheres = false;
     StepTimes    times;
     const double shortest = std::min(wanted, scene.time.smallest_step * plain_step(scene, state));
     for (;;)
       {
-        solvers::FlowResult result = solver.solve(time_step);
+        solvers::FlowResult result = solver.solve(time_step, adheres);
         iterations += result.record.iterations;
         if (optional_features && result.converged && scene.accuracy.estimated)
           result.record.errors.time = time_error(scene, state, solver, result, time_step);
@@ -391,6 +400,10 @@ namespace axiforge::process
               }
           }
         ++repeats;
+        // Friction that comes and goes with a contact may leave no solution without any tension.
+        adheres = !adheres && may_adhere(scene);
+        if (adheres)
+          continue;
         time_step /= 2;
         if (time_step < shortest || repeats > most_repeats)
           throw StepError(

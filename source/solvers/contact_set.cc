@@ -20,6 +20,9 @@ namespace axiforge::solvers
     /// A reaction pulls if it is below this share of the forces of the cells at its node, negative.
     constexpr double tension_of_cells = 1e-6;
 
+    /// The same before convergence, as a multiple of what the forces are still wrong by.
+    constexpr double tension_of_residual = 10;
+
     /// The same over flow stress times area of the workpiece, where cells have hardly any forces.
     constexpr double tension_of_workpiece = 1e-10;
 
@@ -30,8 +33,9 @@ namespace axiforge::solvers
     /// before.
     constexpr double pressed = 0.1;
 
-    /// It is given its friction back so often in a step.
-    constexpr unsigned int most_restored = 2;
+    /// A node whose friction has been taken gets back this share of it, and twice as much in each
+    /// step after.
+    constexpr double first_share = 0.1;
 
     /// Share of its edges by which a node that neither holds nor stays out may be in a tool.
     constexpr double deepest_left_in = 0.01;
@@ -55,24 +59,33 @@ namespace axiforge::solvers
     {
       return a[0] * b[1] - a[1] * b[0];
     }
+
+
+    double largest_flow_stress(const scene::Scene &scene, const State &state)
+    {
+      double largest = 0;
+      for (const CellHistory &cell : state.cell_history)
+        largest =
+            std::max(largest, *std::max_element(cell.flow_stress.begin(), cell.flow_stress.end()));
+      largest = MPI::max(largest, state.communicator);
+      return largest > 0 ? largest : scene.material.flow_stress(0, scene.characteristic_rate).value;
+    }
   } // namespace
 
 
-  ContactSet::ContactSet(const scene::Scene &scene, const State &state)
+  ContactSet::ContactSet(const scene::Scene &scene, const State &state, const bool adheres)
       : nodes(state.contacts)
       , scene(scene)
       , state(state)
+      , adheres(adheres)
       , n_releases(nodes.size(), 0)
-      , slides(nodes.size(), false)
-      , n_restored(nodes.size(), 0)
       , left_in(nodes.size(), 0.)
       , curvature(nodes.size(), 0.)
       , tool_velocities(scene.tools.size())
       , reach(0.05 * scene.size)
       , catch_distance(tolerance::caught * scene.size)
-      , rubbing_pressure(pressed * scene.material.flow_stress(0, scene.characteristic_rate).value)
-      , least_tension(tension_of_workpiece * scene.size * scene.size *
-                      scene.material.flow_stress(0, scene.characteristic_rate).value)
+      , yield_stress(largest_flow_stress(scene, state))
+      , least_tension(tension_of_workpiece * scene.size * scene.size * yield_stress)
   {
     for (const auto &group : state.boundary_ids)
       {
@@ -84,6 +97,10 @@ namespace axiforge::solvers
       }
     if (!scene.tools.empty())
       length = edge_lengths();
+    // What a node could not bear in the last step it is given back by and by.
+    for (NodeContact &node : nodes)
+      if (node.share < 1 && (!node.active() || node.pressure > pressed * yield_stress))
+        node.share = std::min(1., 2 * node.share + first_share);
   }
 
 
@@ -298,10 +315,8 @@ namespace axiforge::solvers
   }
 
 
-  unsigned int
-  ContactSet::update_reactions(const Field &force, const Field &scale, const bool may_release)
+  void ContactSet::update_reactions(const Field &force)
   {
-    unsigned int n_changes = 0;
     for (unsigned int b = 0; b < nodes.size(); ++b)
       {
         NodeContact &contact = nodes[b];
@@ -335,29 +350,48 @@ namespace axiforge::solvers
           }
         else
           contact.reaction = { { f * contact.normal[0], 0 } };
-
-        if (!may_release || n_releases[b] >= free_releases)
-          continue;
-        n_changes += release(b, scale) * node.owned;
       }
+  }
+
+
+  unsigned int ContactSet::release_pulled(const Field &scale, const double residual)
+  {
+    const double doubt     = std::max(tension_of_cells, tension_of_residual * residual);
+    unsigned int n_changes = 0;
+    for (unsigned int b = 0; b < nodes.size(); ++b)
+      if (nodes[b].active() && n_releases[b] < free_releases)
+        n_changes +=
+            release(b, allowed_tension(b, scale, doubt)) * state.tables.boundary_nodes[b].owned;
     return n_changes;
   }
 
 
-  double ContactSet::allowed_tension(const unsigned int b, const Field &scale) const
+  double ContactSet::adhesion(const unsigned int b) const
   {
-    const unsigned int node = state.tables.boundary_nodes[b].node;
-    return tension_of_cells * (scale.local_element(2 * node) + scale.local_element(2 * node + 1)) +
-           least_tension;
+    if (!adheres || !nodes[b].active())
+      return 0;
+    return std::min(scene.tools[nodes[b].tool[0]].friction.cap(0, yield_stress),
+                    yield_stress / std::sqrt(3.)) *
+           node_area(state.tables.boundary_nodes[b].node);
   }
 
 
-  bool ContactSet::release(const unsigned int b, const Field &scale)
+  double
+  ContactSet::allowed_tension(const unsigned int b, const Field &scale, const double share) const
+  {
+    const unsigned int node = state.tables.boundary_nodes[b].node;
+    return share * (scale.local_element(2 * node) + scale.local_element(2 * node + 1)) +
+           least_tension + adhesion(b);
+  }
+
+
+  bool ContactSet::release(const unsigned int b, const double allowed)
   {
     NodeContact       &contact   = nodes[b];
     const unsigned int neighbour = state.tables.boundary_nodes[b].axis_neighbour;
-    const double       allowed   = allowed_tension(b, scale);
     bool               released  = false;
+    if (relieve(b, allowed))
+      return true;
     if (contact.tool[1] != no_tool && contact.reaction[1] < -allowed)
       {
         contact.tool[1] = no_tool;
@@ -375,16 +409,26 @@ namespace axiforge::solvers
       }
     if (released)
       {
-        // To and fro: friction comes and goes with it, so it has to do without; if that is not it,
-        // it is left in the tool a little.
-        slides[b] = ++n_releases[b] > 1;
-        if (n_releases[b] > free_releases)
+        // To and fro, and not for its friction: it is left in the tool a little.
+        if (++n_releases[b] > free_releases)
           left_in[b] = std::min(deepest_left_in *
                                     length.local_element(2 * state.tables.boundary_nodes[b].node),
                                 slowest_catch * way);
         contact.reaction = { { 0, 0 } };
       }
     return released;
+  }
+
+
+  bool ContactSet::relieve(const unsigned int b, const double allowed)
+  {
+    NodeContact &contact = nodes[b];
+    if ((n_releases[b] == 0 && contact.share == 1) || contact.share == 0 ||
+        contact.tool[1] != no_tool || contact.reaction[0] >= -allowed ||
+        scene.tools[contact.tool[0]].friction.kind() == laws::FrictionKind::none)
+      return false;
+    contact.share = 0;
+    return true;
   }
 
 
@@ -395,7 +439,7 @@ namespace axiforge::solvers
       const unsigned int neighbour = state.tables.boundary_nodes[b].axis_neighbour;
       if (!nodes[b].active())
         return 0.;
-      const double allowed = allowed_tension(b, scale);
+      const double allowed = allowed_tension(b, scale, tension_of_cells);
       double       result  = 0;
       if (neighbour == no_tool || !nodes[neighbour].active())
         result = -nodes[b].reaction[0] - allowed;
@@ -412,22 +456,8 @@ namespace axiforge::solvers
     unsigned int n_changes = 0;
     for (unsigned int b = 0; b < nodes.size(); ++b)
       if (tension(b) >= worst * at_once)
-        n_changes += release(b, scale) * state.tables.boundary_nodes[b].owned;
-    return n_changes;
-  }
-
-
-  unsigned int ContactSet::restore_friction()
-  {
-    unsigned int n_changes = 0;
-    for (unsigned int b = 0; b < nodes.size(); ++b)
-      if (slides[b] && nodes[b].active() && nodes[b].pressure > rubbing_pressure &&
-          n_restored[b] < most_restored)
-        {
-          slides[b] = false;
-          ++n_restored[b];
-          n_changes += state.tables.boundary_nodes[b].owned;
-        }
+        n_changes += release(b, allowed_tension(b, scale, tension_of_cells)) *
+                     state.tables.boundary_nodes[b].owned;
     return n_changes;
   }
 
@@ -493,7 +523,7 @@ namespace axiforge::solvers
     result.touches = { { false, false, true } };
     result.normal.fill(middle.normal[0]);
     for (unsigned int a = 0; a < 3; ++a)
-      result.rubs[a] = !slides[boundary.boundary_nodes[a]];
+      result.share[a] = nodes[boundary.boundary_nodes[a]].share;
     for (unsigned int a = 0; a < 2; ++a)
       {
         const NodeContact &end = nodes[boundary.boundary_nodes[a]];
@@ -597,7 +627,7 @@ namespace axiforge::solvers
         for (unsigned int i = 0; i < 2; ++i)
           if (contact.tool[i] != no_tool)
             prescribe(contact.normal[i], -contact.gap[i] / time_step);
-        if (contact.active() && !slides[b] &&
+        if (contact.active() && contact.share == 1 &&
             scene.tools[contact.tool[0]].friction.kind() == laws::FrictionKind::sticking)
           {
             const Vector2 along = tangent(contact.normal[0]);

@@ -201,7 +201,7 @@ namespace axiforge::solvers
     std::vector<Vector2>                            force(scene.tools.size());
     std::vector<double>                             radius(scene.tools.size(), 0.);
     std::vector<std::vector<std::array<double, 2>>> slip(scene.tools.size());
-    double                                          power_contact = 0;
+    double                                          power_contact = 0, tension = 0;
 
     for (unsigned int b = 0; b < contact->nodes.size(); ++b)
       {
@@ -215,7 +215,7 @@ namespace axiforge::solvers
         touch.slip      = (v - contact->tool_velocity(touch.tool[0])) * t;
         const bool sticking =
             scene.tools[touch.tool[0]].friction.kind() == laws::FrictionKind::sticking &&
-            contact->rubs(b);
+            touch.share == 1;
         if (sticking)
           touch.slip = 0;
         if (!node.owned)
@@ -226,6 +226,8 @@ namespace axiforge::solvers
               const Vector2 relative = v - contact->tool_velocity(touch.tool[i]);
               force[touch.tool[i]] += touch.reaction[i] * touch.normal[i];
               power_contact -= touch.reaction[i] * (relative * touch.normal[i]);
+              if (contact->adheres)
+                tension += std::max(0., -touch.reaction[i]);
               radius[touch.tool[i]] =
                   std::max(radius[touch.tool[i]],
                            state.position.local_element(2 * node.node) + time_step * v[0]);
@@ -244,6 +246,7 @@ namespace axiforge::solvers
       }
 
     record.power_contact = MPI::sum(power_contact, state.communicator);
+    record.tension       = MPI::sum(tension, state.communicator);
     record.tools.resize(scene.tools.size());
     for (unsigned int tool = 0; tool < scene.tools.size(); ++tool)
       {

@@ -117,7 +117,7 @@ namespace axiforge::solvers
   }
 
 
-  FlowResult FlowSolver::solve(const double dt)
+  FlowResult FlowSolver::solve(const double dt, const bool adheres)
   {
     const Phase phase("flow solver");
     Timer       total;
@@ -126,7 +126,7 @@ namespace axiforge::solvers
     times                      = StepTimes();
     const double factor_before = system->factor_seconds;
     const double solve_before  = system->solve_seconds;
-    contact                    = std::make_unique<ContactSet>(scene, state);
+    contact                    = std::make_unique<ContactSet>(scene, state, adheres);
     friction                   = std::make_unique<InterfaceFriction>(scene, state);
     velocity                   = state.velocity;
     velocity.update_ghost_values();
@@ -167,7 +167,7 @@ namespace axiforge::solvers
 
         timer.restart();
         unsigned int changes = at_rest ? 0 : contact->locate(velocity, time_step);
-        contact->update_reactions(internal, scale, false);
+        contact->update_reactions(internal);
         if (iteration == 0 && state.step > 0)
           changes += contact->release_departing(scale);
         contact->set_pressures(position);
@@ -176,11 +176,11 @@ namespace axiforge::solvers
         contact->make_frames(velocity, time_step, frames);
         if (is_new) // what is fixed counts from the first residual on, also on a new mesh
           index_frames();
-        contact->update_reactions(balance(), scale, false);
+        contact->update_reactions(balance());
         Norms norms = measure();
         if (norms.residual < release_residual)
           {
-            const unsigned int released = contact->update_reactions(balance(), scale, true);
+            const unsigned int released = contact->release_pulled(scale, norms.residual);
             if (MPI::sum(released, state.communicator) > 0)
               {
                 changes += released;
@@ -195,8 +195,6 @@ namespace axiforge::solvers
         changes = MPI::sum(changes, state.communicator);
         if (changes == 0 && converged(norms)) // no reaction may pull
           changes = MPI::sum(contact->release_worst(scale), state.communicator);
-        if (changes == 0 && converged(norms))
-          changes = MPI::sum(contact->restore_friction(), state.communicator);
         if (changes > 0 && converged(norms))
           {
             contact->make_frames(velocity, time_step, frames);

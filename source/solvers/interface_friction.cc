@@ -13,7 +13,8 @@ namespace axiforge::solvers
     bool capped(const FrictionKind kind)
     {
       return kind == FrictionKind::coulomb || kind == FrictionKind::shear ||
-             kind == FrictionKind::arctan || kind == FrictionKind::tangential_forces;
+             kind == FrictionKind::arctan || kind == FrictionKind::tangential_forces ||
+             kind == FrictionKind::sticking;
     }
 
 
@@ -68,14 +69,16 @@ namespace axiforge::solvers
       : scene(scene)
       , state(state)
       , lags(false)
+      , refreshes(false)
   {
     bool any = false, layer = false;
     for (const scene::Tool &tool : scene.tools)
       {
         const FrictionKind kind = tool.friction.kind();
-        any |= kind != FrictionKind::none && kind != FrictionKind::sticking;
+        any |= kind != FrictionKind::none;
         layer |= kind == FrictionKind::smm;
         lags |= capped(kind) && scene.material.depends_on_rate();
+        refreshes |= lags && kind != FrictionKind::sticking;
       }
     if (!any)
       return;
@@ -116,8 +119,17 @@ namespace axiforge::solvers
         if (touch.tool == no_tool)
           continue;
         const FrictionKind kind = scene.tools[touch.tool].friction.kind();
-        if (kind == FrictionKind::none || kind == FrictionKind::sticking)
+        if (kind == FrictionKind::none)
           continue;
+        // A node that sticks is held; one that cannot bear that bears a share of what shear can.
+        std::array<double, 3> share = touch.share;
+        if (kind == FrictionKind::sticking)
+          {
+            for (double &s : share)
+              s = s < 1 ? s : 0;
+            if (share == std::array<double, 3>{})
+              continue;
+          }
 
         edge.tool                   = touch.tool;
         edge.measure                = touch.measure;
@@ -171,12 +183,12 @@ namespace axiforge::solvers
             evaluate_traction(e, flow_stress, contact, newton);
           }
         for (unsigned int a = 0; a < 3; ++a)
-          if (!touch.rubs[a])
-            {
-              edge.force[a] = edge.traction[a] = 0;
-              for (unsigned int b = 0; b < 3; ++b)
-                edge.matrix[a][b] = edge.matrix[b][a] = 0;
-            }
+          {
+            edge.force[a] *= share[a];
+            edge.traction[a] *= share[a];
+            for (unsigned int b = 0; b < 3; ++b)
+              edge.matrix[a][b] *= std::sqrt(share[a] * share[b]);
+          }
         edge.power = 0;
         for (unsigned int a = 0; a < 3; ++a)
           edge.power += edge.force[a] * edge.slip[a];
@@ -336,7 +348,7 @@ namespace axiforge::solvers
 
   bool InterfaceFriction::refresh_lagged_rates(const std::vector<FlowPoint> &points)
   {
-    if (!lags)
+    if (!refreshes)
       return false;
     for (unsigned int e = 0; e < edges_.size(); ++e)
       if (state.tables.edges[e].owned)

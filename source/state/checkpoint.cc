@@ -12,7 +12,7 @@ namespace axiforge
   namespace
   {
     /// To be raised with every change of what a file holds.
-    constexpr std::uint32_t format_version = 5;
+    constexpr std::uint32_t format_version = 6;
     const std::string       magic          = "AXIFORGE CHECKPOINT\n";
     constexpr std::uint32_t byte_order     = 0x01020304;
   } // namespace
@@ -55,16 +55,16 @@ namespace axiforge
            volume, relative_volume_change, power_tools, power_boundaries, power_plastic,
            power_friction, power_contact, power_volume, power_residual, largest_strain,
            largest_strain_rate, smallest_jacobian, smallest_vertex_jacobian, largest_radius, height,
-           fill, time_to_fill, end_force, cells, unknowns, iterations, set_changes, repeats,
-           residual, divergence, condition, times, remeshings, remeshing_volume_jump,
+           fill, time_to_fill, end_force, tension, cells, unknowns, iterations, set_changes,
+           repeats, residual, divergence, condition, times, remeshings, remeshing_volume_jump,
            remeshing_strain_jump, errors] = object;
     // All but the condition, which nothing that follows depends on.
     archive(step, time, time_step, stroke, time_middle, stroke_middle, tools, boundaries, gauges,
             volume, relative_volume_change, power_tools, power_boundaries, power_plastic,
             power_friction, power_contact, power_volume, power_residual, largest_strain,
             largest_strain_rate, smallest_jacobian, smallest_vertex_jacobian, largest_radius,
-            height, fill, time_to_fill, end_force, cells, unknowns, iterations, set_changes,
-            repeats, residual, divergence, times, remeshings, remeshing_volume_jump,
+            height, fill, time_to_fill, end_force, tension, cells, unknowns, iterations,
+            set_changes, repeats, residual, divergence, times, remeshings, remeshing_volume_jump,
             remeshing_strain_jump, errors);
   }
 

@@ -29,8 +29,13 @@ namespace axiforge::solvers
   class ContactSet
   {
   public:
-    /// Starts from the contacts of the state.
-    ContactSet(const scene::Scene &scene, const State &state);
+    /**
+     * Starts from the contacts of the state.
+     * @param adheres nodes whose friction does not vanish with the pressure bear a tension of a
+     * tenth of the flow stress: for steps that have no solution otherwise, because such a node
+     * pulls if it is held, and presses if it is not
+     */
+    ContactSet(const scene::Scene &scene, const State &state, bool adheres = false);
 
     /// Whether a tool comes nearer, in the step, to surface that it then is in if nothing moves. If
     /// none does, and nothing else drives the workpiece, rest without any force is the solution.
@@ -52,15 +57,20 @@ namespace axiforge::solvers
     unsigned int locate(const Field &velocity, double time_step);
 
     /**
-     * Sets the reactions from the nodal forces that the contact has to supply, and releases nodes
-     * that are under tension.
+     * Sets the reactions from the nodal forces that the contact has to supply.
      * @param force residual of the nodes without contact (internal + friction - external), ghosts
      * up to date [N]
-     * @param scale sum of the magnitudes of the cells' forces, same layout [N]
-     * @param may_release false: reactions only (the iterate is too far from equilibrium)
+     */
+    void update_reactions(const Field &force);
+
+    /**
+     * Releases nodes that are under tension, before convergence already: by more than the forces
+     * are in doubt.
+     * @param scale sum of the magnitudes of the cells' forces, layout of the forces [N]
+     * @param residual that the forces do not balance by, as a share of the cells' forces
      * @return number of locally owned nodes released
      */
-    unsigned int update_reactions(const Field &force, const Field &scale, bool may_release);
+    unsigned int release_pulled(const Field &scale, double residual);
 
     /**
      * Releases, of the nodes that are still under tension when all else has converged, those that
@@ -72,15 +82,11 @@ namespace axiforge::solvers
      */
     unsigned int release_worst(const Field &scale);
 
-    /// Gives friction back to nodes that have lost it on the way but are pressed at convergence.
-    /// @return number of locally owned nodes
-    unsigned int restore_friction();
-
     /**
      * Releases the nodes that the first increment of a step would have to pull back on to their
      * tool: those whose reaction is less than what closing the gap takes that they run into, as
      * where a wall leaves the land of a punch. For the iterate that a step starts from. Collective.
-     * @param scale as in update_reactions()
+     * @param scale as in release_pulled()
      * @return number of locally owned nodes released
      */
     unsigned int release_departing(const Field &scale);
@@ -94,7 +100,7 @@ namespace axiforge::solvers
       unsigned int           tool = no_tool; ///< no_tool: the edge does not touch
       std::array<bool, 3>    touches{};
       std::array<Vector2, 3> normal;    ///< of the face that the middle is on
-      std::array<bool, 3>    rubs{};    ///< friction acts there
+      std::array<double, 3>  share{};   ///< of the friction law's traction that acts there
       std::array<double, 3>  weight{};  ///< nodal (Simpson) weights, 1 in all on a whole edge
       std::array<double, 3>  measure{}; ///< area that each node stands for [mm^2]
     };
@@ -115,12 +121,6 @@ namespace axiforge::solvers
     /// slides, the reaction turns back (doc/theory.md, (18a)). 0 at nodes with two conditions.
     double turning_stiffness(unsigned int b, double time_step) const;
 
-    /// Whether friction acts on a node that touches: not on one that goes to and fro without end.
-    bool rubs(unsigned int b) const
-    {
-      return !slides[b];
-    }
-
     /// Velocity of a tool during the step [mm/s].
     Vector2 tool_velocity(unsigned int tool) const
     {
@@ -136,17 +136,25 @@ namespace axiforge::solvers
     /// Prescribed velocity or pressure condition of a boundary id; no_tool: none.
     unsigned int condition_of(dealii::types::boundary_id id) const;
 
-    std::vector<NodeContact> nodes; ///< per boundary node of the state's tables
+    std::vector<NodeContact> nodes;   ///< per boundary node of the state's tables
+    const bool               adheres; ///< nodes may pull
 
   private:
     /// Half the lengths of the edges at each node, in the first component [mm].
     Field edge_lengths() const;
 
-    /// Tension of a node that counts as none [N].
-    double allowed_tension(unsigned int b, const Field &scale) const;
+    /// Tension of a node that counts as none: a share of the cells' forces, and the least [N].
+    double allowed_tension(unsigned int b, const Field &scale, double share) const;
 
-    /// Takes a node off what pulls it. @return whether something does
-    bool release(unsigned int b, const Field &scale);
+    /// Takes a node off what pulls it, or part of its friction. @return whether something pulls it
+    bool release(unsigned int b, double allowed);
+
+    /// Takes its friction from a node that was released before in this step and pulls again.
+    /// @return whether it has had any to take
+    bool relieve(unsigned int b, double allowed);
+
+    /// Tension that a node bears where contacts adhere [N].
+    double adhesion(unsigned int b) const;
 
     /// Ends of profiles that lie on another tool at the end of the step: the profile goes on
     /// straight there, so that nothing slips through the corner that the two make.
@@ -161,18 +169,16 @@ namespace axiforge::solvers
     const State                    &state;
     std::vector<unsigned int>       n_releases;  ///< of each boundary node in this step
     std::vector<std::vector<Point>> sealed_ends; ///< of each tool, in its own coordinates [mm]
-    std::vector<bool>         slides;     ///< without friction: released, caught and released again
-    std::vector<unsigned int> n_restored; ///< how often friction has come back
-    std::vector<double>       left_in;    ///< how deep a free node may be in a tool [mm]
-    std::vector<double>       curvature;  ///< of the first tool at each boundary node [1/mm]
-    std::vector<Vector2>      tool_velocities;
-    std::vector<unsigned int> condition; ///< per boundary id
+    std::vector<double>             left_in;     ///< how deep a free node may be in a tool [mm]
+    std::vector<double>             curvature;   ///< of the first tool at each boundary node [1/mm]
+    std::vector<Vector2>            tool_velocities;
+    std::vector<unsigned int>       condition; ///< per boundary id
     Field  length;  ///< half the lengths of the edges at each node, in the first component [mm]
     Field  area;    ///< that the nodes stand for [mm^2]
     double way = 0; ///< of the tools in the step [mm]
     double reach;   ///< how far an active node is looked for [mm]
-    double catch_distance;   ///< gaps below this are round-off [mm]
-    double rubbing_pressure; ///< from which on a node rubs for sure [MPa]
-    double least_tension;    ///< that counts as one [N]
+    double catch_distance; ///< gaps below this are round-off [mm]
+    double yield_stress;   ///< largest flow stress of the workpiece [MPa]
+    double least_tension;  ///< that counts as one [N]
   };
 } // namespace axiforge::solvers

@@ -44,7 +44,8 @@ namespace axiforge::solvers
     FlowSolver(const scene::Scene &scene, const State &state);
 
     /// Velocity of the step from state.time to state.time + time_step. Collective.
-    FlowResult solve(double time_step);
+    /// @param adheres contacts may bear some tension, see ContactSet
+    FlowResult solve(double time_step, bool adheres = false);
 
     const LinearSystem &linear_system() const
     {

@@ -77,10 +77,11 @@ namespace axiforge::solvers
                         const std::array<double, 3>  &weights,
                         bool                          newton);
 
-    const scene::Scene                &scene;
-    const State                       &state;
-    bool                               lags; ///< some law has a cap that depends on the strain rate
-    std::vector<Edge>                  edges_;
+    const scene::Scene &scene;
+    const State        &state;
+    bool                lags;      ///< some law has a cap that depends on the strain rate
+    bool                refreshes; ///< one of them acts everywhere, not only where sticking pulls
+    std::vector<Edge>   edges_;
     std::vector<EdgeFriction>          stored;
     std::vector<std::array<double, 3>> tangents; ///< primal-dual, per node of an edge [MPa s/mm]
     std::vector<std::array<double, 3>> caps;     ///< [MPa]

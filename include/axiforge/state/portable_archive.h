@@ -16,8 +16,8 @@ namespace axiforge
 
   template <typename Archive> void visit(Archive &archive, NodeContact &object)
   {
-    auto &[tool, face, normal, gap, reaction, slip, pressure, traction] = object;
-    archive(tool, face, normal, gap, reaction, slip, pressure, traction);
+    auto &[tool, face, normal, gap, reaction, slip, pressure, traction, share] = object;
+    archive(tool, face, normal, gap, reaction, slip, pressure, traction, share);
   }
 
   template <typename Archive> void visit(Archive &archive, EdgeFriction &object)

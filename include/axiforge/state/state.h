@@ -91,6 +91,7 @@ namespace axiforge
     double                 slip     = 0; ///< tangential speed against the first tool [mm/s]
     double                 pressure = 0; ///< contact pressure [MPa]
     double                 traction = 0; ///< friction traction [MPa]
+    double                 share    = 1; ///< of the friction law's traction that the node can bear
 
     bool active() const
     {

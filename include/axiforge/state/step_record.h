@@ -80,6 +80,7 @@ namespace axiforge
     /// Until the die is full [s]; infinite where it is open.
     double time_to_fill = std::numeric_limits<double>::infinity();
     double end_force    = 0; ///< of the driving tool at the end of the step, extrapolated [N]
+    double tension      = 0; ///< sum of what nodes pull with in a step that has no other way [N]
 
     unsigned int cells = 0, unknowns = 0, iterations = 0, set_changes = 0, repeats = 0;
     double       residual = 0, divergence = 0;
