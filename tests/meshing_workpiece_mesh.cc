@@ -447,7 +447,9 @@ TEST_F(Files, FourAndNineNodesAndCad)
 class CadFiles : public Files
 {
 protected:
-  WorkpieceMesh read_step(const std::string &geo, const std::string &face = "") const
+  WorkpieceMesh read_step(const std::string &geo,
+                          const std::string &face = "",
+                          const std::string &unit = "") const
   {
     const std::string path = folder + "/part.step";
     std::filesystem::remove(path);
@@ -456,6 +458,15 @@ protected:
       session.open(file("make.geo", "SetFactory(\"OpenCASCADE\");\n" + geo));
       session.run("writing", [&]() { gmsh::write(path); });
     }
+    if (!unit.empty())
+      {
+        const std::string millimetre = "SI_UNIT(.MILLI.,.METRE.)";
+        std::ifstream     stream(path);
+        std::string       text{ std::istreambuf_iterator<char>(stream), {} };
+        const std::size_t at = text.find(millimetre);
+        EXPECT_NE(at, std::string::npos);
+        file("part.step", text.replace(at, millimetre.size(), unit));
+      }
     GeometryParameters parameters;
     parameters.file         = path;
     parameters.face         = face;
@@ -499,6 +510,18 @@ TEST_F(CadFiles, SolidsAreCutAtTheirMeridian)
               1e-3 * sphere_volume);
   EXPECT_NE(message("Box(1) = {0, 0, 0, 3, 4, 5};\n").find("none of revolution"),
             std::string::npos);
+}
+
+// The same numbers in other units of the file: the mesh is in mm.
+TEST_F(CadFiles, UnitsOfTheFileAreConverted)
+{
+  const std::string disc   = "Rectangle(1) = {0, 0, 0, 10, 5};\n";
+  const double      volume = M_PI * 100 * 5;
+  EXPECT_NEAR(read_step(disc).volume(), volume, 1e-6 * volume);
+  EXPECT_NEAR(read_step(disc, "", "SI_UNIT(.CENTI.,.METRE.)").volume(), 1e3 * volume,
+              1e-3 * volume);
+  const std::string small = "Rectangle(1) = {0, 0, 0, 0.01, 0.005};\n";
+  EXPECT_NEAR(read_step(small, "", "SI_UNIT($,.METRE.)").volume(), volume, 1e-6 * volume);
 }
 
 TEST_F(CadFiles, FacesAreChosenAndTurnedIntoThePlane)

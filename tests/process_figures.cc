@@ -244,6 +244,50 @@ TEST(ContactEnd, IsTheEdgeOfAFullFace)
 }
 
 
+// A tube between frictionless platens whose bore is closed at a given speed: v_r = V r / (2 H) + C
+// / r, which is zero at one radius. It is found wherever it lies in an edge, to the error of the
+// flow.
+TEST(NeutralRadius, LiesWhereTheRadialVelocityIsZero)
+{
+  constexpr double  H = 4, V = 1, bore = 10;
+  TemporaryFolder   folder;
+  const std::string ring = folder.file(
+      "ring.geo",
+      "Point(1) = {10, 0, 0}; Point(2) = {20, 0, 0}; Point(3) = {20, 4, 0}; Point(4) = {10, 4, "
+      "0};\n"
+      "Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};\n"
+      "Curve Loop(1) = {1:4}; Plane Surface(1) = {1};\n"
+      "Transfinite Curve{1, 3} = 5; Transfinite Curve{2, 4} = 2; Transfinite Surface{1};\n"
+      "Recombine Surface{1}; Physical Curve(\"inner\") = {4};\n"
+      "Physical Curve(\"symmetry\") = {1}; Physical Surface(\"workpiece\") = {1};\n");
+  for (const double neutral : { 12.1, 13., 14.37, 15.01, 16.6, 18. })
+    {
+      double error[2];
+      for (const unsigned int level : { 0u, 1u })
+        {
+          const double inwards = (neutral * neutral - bore * bore) * V / (2 * bore * H);
+          FlowProblem  problem(
+               Entries{ "Tools = upper", "Tool upper/Geometry file = " + geometry("platen.geo"),
+                       fmt::format("Tool upper/Geometry parameters = Z = {}, Radius = 40", H),
+                       "Tool upper/Motion/Type = constant velocity",
+                       fmt::format("Tool upper/Motion/Velocity = 0, {}", -V),
+                       "Process/End stroke = 1", "Boundaries = inner",
+                       fmt::format("Boundary inner/Velocity r = {}", -inwards),
+                       fmt::format("Workpiece/Refinement levels = {}", level) } +
+               power_law(100, 1) + workpiece(ring));
+          const StepRecord record =
+              process::advance(problem.scene, problem.state, problem.solver(), 1e-7, StepRecord());
+          error[level] = record.tools[0].neutral_radius / neutral - 1;
+        }
+      // The line between two nodes h apart: h^2 / 8 of the curvature over the slope, 1 / r.
+      for (const unsigned int level : { 0u, 1u })
+        {
+          const double h = level ? 0.625 : 1.25;
+          EXPECT_LT(std::abs(error[level]), 1.2 * h * h / (8 * neutral * neutral)) << neutral;
+        }
+    }
+}
+
 int main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);

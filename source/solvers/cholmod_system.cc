@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <algorithm>
 #include <limits>
+#include <new>
 
 #include <axiforge/base/errors.h>
 #include <axiforge/solvers/cholmod_system.h>
@@ -30,8 +31,16 @@ namespace axiforge::solvers
     std::copy_n(columns, 3, common.nrelax);
     std::copy_n(zeros, 3, common.zrelax);
     solver.analyzePattern(matrix);
+    check_memory();
     if (solver.info() != Eigen::Success)
-      throw ComputationError("CHOLMOD could not analyse the pattern of the matrix: out of memory?");
+      throw ComputationError("CHOLMOD could not analyse the pattern of the matrix.");
+  }
+
+
+  void CholmodSystem::check_memory()
+  {
+    if (solver.cholmod().status == CHOLMOD_OUT_OF_MEMORY)
+      throw std::bad_alloc();
   }
 
 
@@ -64,6 +73,7 @@ namespace axiforge::solvers
   bool CholmodSystem::factorise()
   {
     solver.factorize(matrix);
+    check_memory();
     return solver.info() == Eigen::Success;
   }
 
@@ -71,6 +81,7 @@ namespace axiforge::solvers
   bool CholmodSystem::solve(double *solution)
   {
     const Eigen::VectorXd x = solver.solve(right_hand_side);
+    check_memory();
     for (unsigned int i = 0; i < row_of_unknown.size(); ++i)
       solution[i] = row_of_unknown[i] < 0 ? 0. : x[row_of_unknown[i]];
     return x.allFinite();
@@ -144,11 +155,13 @@ namespace axiforge::solvers
     std::vector<int> result(n);
     for (int k = 0; factor && k < n; ++k)
       result[static_cast<const int *>(factor->Perm)[k]] = k;
-    const bool done = factor != nullptr;
+    const bool done = factor != nullptr, out_of_memory = common.status == CHOLMOD_OUT_OF_MEMORY;
     cholmod_free_factor(&factor, &common);
     cholmod_finish(&common);
+    if (out_of_memory)
+      throw std::bad_alloc();
     if (!done)
-      throw ComputationError("CHOLMOD could not order the unknowns: out of memory?");
+      throw ComputationError("CHOLMOD could not order the unknowns.");
     return result;
   }
 

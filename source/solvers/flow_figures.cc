@@ -23,7 +23,8 @@ namespace axiforge::solvers
 
     /**
      * Radius where the slip changes sign [mm], NaN if it does not. Where several do, the outermost;
-     * nodes that hardly slip (sticking zones) do not count.
+     * signs of nodes that hardly slip (sticking zones) do not count, unless they change just once
+     * between two that do.
      */
     double neutral_radius(std::vector<std::array<double, 2>> radius_and_slip)
     {
@@ -31,15 +32,30 @@ namespace axiforge::solvers
       double largest = 0;
       for (const auto &entry : radius_and_slip)
         largest = std::max(largest, std::abs(entry[1]));
-      double                       radius = std::numeric_limits<double>::quiet_NaN();
-      const std::array<double, 2> *last   = nullptr;
-      for (const auto &entry : radius_and_slip)
+      double     radius = std::numeric_limits<double>::quiet_NaN();
+      const auto zero   = [](const std::array<double, 2> &a, const std::array<double, 2> &b) {
+        return (a[0] * b[1] - b[0] * a[1]) / (b[1] - a[1]);
+      };
+      const unsigned int none = radius_and_slip.size();
+      unsigned int       last = none;
+      for (unsigned int i = 0; i < radius_and_slip.size(); ++i)
         {
-          if (std::abs(entry[1]) < 1e-3 * largest)
+          if (std::abs(radius_and_slip[i][1]) < 1e-3 * largest)
             continue;
-          if (last && (*last)[1] * entry[1] < 0)
-            radius = ((*last)[0] * entry[1] - entry[0] * (*last)[1]) / (entry[1] - (*last)[1]);
-          last = &entry;
+          if (last != none && radius_and_slip[last][1] * radius_and_slip[i][1] < 0)
+            {
+              radius                 = zero(radius_and_slip[last], radius_and_slip[i]);
+              unsigned int n_changes = 0, at = 0;
+              for (unsigned int j = last; j < i; ++j)
+                if (radius_and_slip[j][1] * radius_and_slip[j + 1][1] < 0)
+                  {
+                    at = j;
+                    ++n_changes;
+                  }
+              if (n_changes == 1)
+                radius = zero(radius_and_slip[at], radius_and_slip[at + 1]);
+            }
+          last = i;
         }
       return radius;
     }

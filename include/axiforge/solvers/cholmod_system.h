@@ -58,6 +58,9 @@ namespace axiforge::solvers
     places(const std::string &ordering, const Nodes &nodes, const std::vector<int> &number, int n);
     void make_pattern();
 
+    /// @throws std::bad_alloc if CHOLMOD has run out of memory
+    void check_memory();
+
     unsigned int                  n_rows;
     std::vector<int>              row_of_unknown; ///< -1: not in the system
     std::vector<std::vector<int>> cell_rows;
