@@ -537,6 +537,24 @@ TEST_F(CadFiles, FacesAreChosenAndTurnedIntoThePlane)
 
   const std::string one  = "Rectangle(1) = {2, 3, 0, 8, 5};\n";
   const double      tube = M_PI * (100 - 4) * 5;
+  // Where rounding leaves the turned section off its plane, on the axis too.
+  for (const std::string axis : { "1, 0, 0", "0, 1, 0" })
+    for (const double size : { 7., 10., 12.5, 25., 80. })
+      {
+        const std::string text = fmt::format(
+            "Rectangle(1) = {{0, 0, 0, {0}, {0}}};\nRotate{{ {{{1}}}, {{0, 0, 0}}, Pi/2 }}"
+            "{{ Surface{{1}}; }}\n",
+            size, axis);
+        const double full = M_PI * std::pow(size, 3);
+        EXPECT_NEAR(read_step(text).volume(), full, 1e-6 * full) << axis << ' ' << size;
+      }
+  for (const double r : { 12.5, 25. })
+    {
+      const double full = M_PI * r * r * r;
+      EXPECT_NEAR(
+          read_step(fmt::format("Cylinder(1) = {{0, 0, 0, {0}, 0, 0, {0}}};\n", r)).volume(), full,
+          1e-6 * full);
+    }
   for (const std::string turn : { "", "Rotate{ {1, 0, 0}, {0, 0, 0}, Pi/2 }{ Surface{1}; }\n",
                                   "Rotate{ {1, 0, 0}, {0, 0, 0}, Pi/2 }{ Surface{1}; }\nRotate{ "
                                   "{0, 0, 1}, {0, 0, 0}, Pi/2 }{ "

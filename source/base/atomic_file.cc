@@ -23,7 +23,14 @@ namespace axiforge
     /// With the reason of the last failed system call.
     [[noreturn]] void throw_cannot_write(const std::string &path)
     {
-      const int reason = errno;
+      int reason = errno;
+      // Streams lose the reason; a full disk is the usual one.
+      std::error_code                   ignored;
+      const std::filesystem::path       parent = std::filesystem::path(path).parent_path();
+      const std::filesystem::space_info space =
+          std::filesystem::space(parent.empty() ? "." : parent, ignored);
+      if (reason == 0 && !ignored && space.available < 65536)
+        reason = ENOSPC;
       throw ComputationError(fmt::format(
           "Cannot write \"{}\": {}. Check the output folder, its rights and the space left.", path,
           reason != 0 ? std::strerror(reason) : "unknown error"));

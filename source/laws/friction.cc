@@ -65,7 +65,8 @@ namespace axiforge::laws
             "stay at its default.",
             Selection(selection_of(friction_laws)));
       visit("Coefficient", p.coefficient,
-            "mu [-] of coulomb, 0 to 1, needed there. No default: a law of friction without its "
+            "mu [-] of coulomb, 0 to less than 2 (above 1 with a note), needed there. No default: "
+            "a law of friction without its "
             "constant would be none.",
             OptionalDouble());
       visit("Factor", p.factor,
@@ -175,8 +176,7 @@ namespace axiforge::laws
     // What stands at its default passes: the checks need not know which law reads which entry.
     check.between("Coefficient", parameters.coefficient, 0., infinity);
     if (parameters.coefficient >= 2.)
-      check.between("Coefficient", parameters.coefficient, 0., 1.,
-                    per_cent(parameters.coefficient));
+      check.below("Coefficient", parameters.coefficient, 0., 2., per_cent(parameters.coefficient));
     if (parameters.coefficient > 1.)
       note(fmt::format("\"{}\" = {} is more than any pair of materials has: the surface will stick "
                        "wherever it is pressed. In per cent, {} % is {}.",

@@ -74,11 +74,6 @@ namespace axiforge::laws
     const ReferencePoints serendipity_points = make_reference_points(SmmElement::serendipity);
     const ReferencePoints lagrange_points    = make_reference_points(SmmElement::lagrange);
 
-    double cross(const Vector2 &a, const Vector2 &b)
-    {
-      return a[0] * b[1] - a[1] * b[0];
-    }
-
     /// One point of the layer: where it is and what moves it.
     struct LayerPoint
     {

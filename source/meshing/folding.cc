@@ -36,12 +36,6 @@ namespace axiforge::meshing
     using tolerance::same_place;
 
 
-    double cross(const Vector2 &a, const Vector2 &b)
-    {
-      return a[0] * b[1] - a[1] * b[0];
-    }
-
-
     enum EdgeKind
     {
       surface,

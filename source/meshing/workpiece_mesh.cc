@@ -346,9 +346,12 @@ namespace axiforge::meshing
       std::map<std::size_t, std::array<double, 3>> nodes;
       for (std::size_t i = 0; i < tags.size(); ++i)
         nodes[tags[i]] = { { x[3 * i], x[3 * i + 1], x[3 * i + 2] } };
+      double size = 0;
+      for (const auto &entry : nodes)
+        size = std::max(size, std::abs(entry.second[0]) + std::abs(entry.second[1]));
       const auto node = [&](const std::size_t tag) {
         const std::array<double, 3> &y = nodes.at(tag);
-        if (std::abs(y[2]) > 1e-6 * (std::abs(y[0]) + std::abs(y[1])))
+        if (std::abs(y[2]) > 1e-6 * size)
           throw source.wrong(fmt::format("its mesh leaves gmsh's plane z = 0 (z = {:.6g})", y[2]),
                              "The section has to have x = r and y = z");
         return Point(y[0], y[1]);

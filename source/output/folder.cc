@@ -177,12 +177,17 @@ namespace axiforge::output
         if (!kept)
           foreign.push_back(path);
       }
+    for (const std::string sub : { "fields", "input" })
+      for (const auto &entry : fs::directory_iterator(folder + "/" + sub, ignored))
+        if (entry.is_regular_file(ignored) &&
+            (sub == "input" || is_field(entry.path().filename().string())))
+          foreign.push_back(folder + "/" + sub + "/" + entry.path().filename().string());
     if (!foreign.empty() && !holds_results(folder))
       throw InputError(fmt::format(
           "The folder \"{}\" has a file \"{}\" and is no folder of results (it has no "
           "versions.txt of axiforge): the run would write over it. Choose another folder with "
           "--output, or move the file away.",
-          folder, fs::path(foreign.front()).filename().string()));
+          folder, fs::path(foreign.front()).lexically_relative(folder).string()));
   }
 
 

@@ -230,6 +230,20 @@ namespace axiforge::process
     }
 
 
+    /// What plastic flow cannot do: rigid-plastic metal keeps its volume.
+    void tell_volume(const State &state, const StepRecord &record, const bool quiet)
+    {
+      constexpr double worth_telling = 1e-3;
+      if (std::abs(record.relative_volume_change) > worth_telling &&
+          dealii::Utilities::MPI::this_mpi_process(state.communicator) == 0)
+        (quiet ? std::cerr : std::cout)
+            << fmt::format("Warning: the volume has changed by {:.2g} % in the run. Nodes go "
+                           "straight in a step: take shorter ones, or smaller cells.\n",
+                           100 * record.relative_volume_change)
+            << std::flush;
+    }
+
+
     /// Sees the steps in which contacts pull, see StepRecord::tension, and says so at the end.
     class TensionWatch
     {
@@ -352,11 +366,13 @@ namespace axiforge::process
         results.finish();
         table.tell(state);
         tension.tell(state, quiet);
+        tell_volume(state, record, quiet);
       }
     catch (const ComputationError &error)
       {
         table.tell(state);
         tension.tell(state, quiet);
+        tell_volume(state, record, quiet);
         throw ComputationError(error.what() +
                                keep_what_there_is(state, record, results, checkpoints));
       }

@@ -264,7 +264,16 @@ namespace axiforge::process
           scene::in_operation(operation.operation, [&] {
             std::unique_ptr<scene::Scene> scene = std::move(first_scene);
             if (resuming)
-              scene = std::make_unique<scene::Scene>(operation, chain.progress.outline);
+              {
+                scene = std::make_unique<scene::Scene>(operation, chain.progress.outline);
+                if (state.time > scene->end_time() * (1 + 1e-9))
+                  throw InputError(fmt::format(
+                      "The checkpoint is at time {:.6g} s, stroke {:.6g} mm, beyond the end of the "
+                      "operation ({:.6g} s, {:.6g} mm): there is nothing to go on with. Give a "
+                      "later end, or start without --resume.",
+                      state.time, scene->stroke(state.time), scene->end_time(),
+                      scene->stroke(scene->end_time())));
+              }
             else
               {
                 if (!scene)

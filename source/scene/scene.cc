@@ -384,7 +384,8 @@ namespace axiforge::scene
                   "Take the boundary out of \"Boundaries\" if it is a free surface");
             if (boundary.pressure != BoundaryParameters().pressure)
               throw InputError::entry(section + "/Pressure", boundary.pressure,
-                                      "it has no meaning with Type = velocity", "its default 0",
+                                      "it has no meaning with Type = velocity",
+                                      "its default, empty",
                                       "Remove the entry, or set Type = pressure");
             for (unsigned int c = 0; c < 2; ++c)
               if (condition.velocity[c])
@@ -404,6 +405,12 @@ namespace axiforge::scene
                                         "it has no meaning with Type = pressure",
                                         "its default free",
                                         "Remove the entry, or set Type = velocity");
+            if (boundary.pressure == BoundaryParameters().pressure)
+              throw InputError::entry(section + "/Pressure", boundary.pressure,
+                                      "Type = pressure needs it",
+                                      "an expression in r, z and t for a pressure [MPa]",
+                                      "A surface without any pressure is free: take it out of "
+                                      "\"Boundaries\"");
             condition.pressure = parse_expression(section + "/Pressure", boundary.pressure);
             if (!condition.pressure)
               throw InputError::entry(section + "/Pressure", boundary.pressure,

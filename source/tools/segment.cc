@@ -19,11 +19,6 @@ namespace axiforge::tools
     /// Starting intervals of the search on a cubic.
     constexpr unsigned int n_search_intervals = 8;
 
-    double cross(const Vector2 &a, const Vector2 &b)
-    {
-      return a[0] * b[1] - a[1] * b[0];
-    }
-
     /// @p angle shifted by full turns into [0, 2 pi).
     double positive_angle(const double angle)
     {

@@ -11,4 +11,10 @@ namespace axiforge
 
   /// A vector (r, z): displacement [mm], velocity [mm/s] or a direction.
   using Vector2 = dealii::Tensor<1, 2>;
+
+  /// a x b, out of the plane.
+  inline double cross(const Vector2 &a, const Vector2 &b)
+  {
+    return a[0] * b[1] - a[1] * b[0];
+  }
 } // namespace axiforge

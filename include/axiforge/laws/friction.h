@@ -14,7 +14,8 @@ namespace dealii
 namespace axiforge::laws
 {
   /// `none` and `sticking` are conditions on the velocity, `smm` is a layer (smm_layer.h); the
-  /// others are tractions that Friction::evaluate() gives.
+  /// others are tractions that Friction::evaluate() gives. So is what a sticking node bears that
+  /// can't be held (doc/theory.md, section 5).
   enum class FrictionKind
   {
     none,
@@ -118,11 +119,11 @@ namespace axiforge::laws
     FrictionKind kind() const;
 
     /// The traction of `coulomb`, `shear`, `arctan`, `tangential_forces`, `norton`; zero for
-    /// `none`. A programming error for `sticking` and `smm`.
+    /// `none`; that of `shear` with m = 1 for `sticking`. A programming error for `smm`.
     FrictionResponse evaluate(const FrictionPoint &point) const;
 
-    /// The largest |traction| that the law allows [MPa]: 0 for `none`; infinite for `norton`,
-    /// `sticking` and `smm`, which have no bound of their own.
+    /// The largest |traction| that the law allows [MPa]: 0 for `none`; infinite for `norton` and
+    /// `smm`, which have no bound of their own.
     double cap(double pressure, double flow_stress) const;
 
     /// m of shear, arctan, tangential forces; f' of smm.

@@ -194,7 +194,7 @@ namespace axiforge::scene
   {
     std::string name;
     std::string type       = "velocity";
-    std::string velocity_r = "free", velocity_z = "free", pressure = "0";
+    std::string velocity_r = "free", velocity_z = "free", pressure;
 
     void declare(dealii::ParameterHandler &prm);
   };

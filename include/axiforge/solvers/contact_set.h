@@ -140,6 +140,9 @@ namespace axiforge::solvers
     const bool               adheres; ///< nodes may pull
 
   private:
+    /// Directions closer than this (sine of the angle) are one condition.
+    static constexpr double parallel = 0.02;
+
     /// Half the lengths of the edges at each node, in the first component [mm].
     Field edge_lengths() const;
 

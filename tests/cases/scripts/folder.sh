@@ -82,6 +82,15 @@ echo "subsection Mine" >foreign/output/input.prm
 run foreign 1 mine/scene.prm
 grep -qF 'is no folder of results' foreign/stderr || fail "$(cat foreign/stderr)"
 [ "$(cat foreign/output/input.prm)" = "subsection Mine" ] || fail "a file of another was written over"
+# As are a geometry file and fields where the run would put its own.
+for file in input/platen.geo fields/workpiece_00099.vtu; do
+  folder=foreign_$(dirname $file)
+  mkdir -p "$folder/output/$(dirname $file)"
+  echo "// mine" >"$folder/output/$file"
+  run "$folder" 1 mine/scene.prm
+  grep -qF "has a file \"$file\" and is no folder of results" "$folder/stderr" || fail "$(cat "$folder/stderr")"
+  [ "$(cat "$folder/output/$file")" = "// mine" ] || fail "$file of another was written over"
+done
 mkdir -p table/output
 cp scene/lib/motion.csv table/output/history.csv
 run table 1 mine/scene.prm --set "Tool upper/Motion/Type = table" \
