@@ -31,9 +31,9 @@ namespace axiforge::solvers
   public:
     /**
      * Starts from the contacts of the state.
-     * @param adheres nodes whose friction does not vanish with the pressure bear a tension of a
-     * tenth of the flow stress: for steps that have no solution otherwise, because such a node
-     * pulls if it is held, and presses if it is not
+     * @param adheres nodes bear a tension of up to the shear stress that their friction has without
+     * pressure: for steps that have no solution otherwise, because such a node pulls if it is held,
+     * and presses if it is not
      */
     ContactSet(const scene::Scene &scene, const State &state, bool adheres = false);
 
