@@ -174,6 +174,32 @@ TEST(Departure, lets_go_what_would_have_to_be_pulled_back)
 }
 
 
+// A node that has lost its friction gets it back over the steps in which it is pressed.
+TEST(Friction, comes_back_to_a_node_that_is_pressed)
+{
+  FlowProblem problem(
+      Entries{ "Tools = upper", "Process/End stroke = 3" } +
+      workpiece(geometry("cylinder_full.geo"),
+                "Radius = 25, Height = 30, RadialCells = 2, AxialCells = 2") +
+      Entries{ "Material/Model = perfectly plastic", "Material/Yield stress = 120" } +
+      tool("upper", geometry("platen.geo"), "Z = 30, Radius = 60") + moving("upper", -1));
+  for (const auto &[pressure, expected] :
+       { std::pair(13., std::array<double, 5>{ { 0.1, 0.3, 0.7, 1, 1 } }),
+         std::pair(11., std::array<double, 5>{}) })
+    {
+      NodeContact &node = problem.state.contacts[0];
+      node.tool[0]      = 0;
+      node.share        = 0;
+      node.pressure     = pressure;
+      for (const double share : expected)
+        {
+          node.share = solvers::ContactSet(problem.scene, problem.state).nodes[0].share;
+          EXPECT_NEAR(node.share, share, 1e-12) << pressure;
+        }
+    }
+}
+
+
 // A pull on all nodes under a platen, as a share of the shear stress that its friction has without
 // pressure. Only where contacts adhere, and only what is less than that, is borne.
 TEST(Adhesion, bears_less_than_the_shear_stress_of_its_friction)

@@ -177,12 +177,14 @@ namespace axiforge::output
         if (!kept)
           foreign.push_back(path);
       }
+    if (holds_results(folder))
+      return;
     for (const std::string sub : { "fields", "input" })
       for (const auto &entry : fs::directory_iterator(folder + "/" + sub, ignored))
         if (entry.is_regular_file(ignored) &&
             (sub == "input" || is_field(entry.path().filename().string())))
           foreign.push_back(folder + "/" + sub + "/" + entry.path().filename().string());
-    if (!foreign.empty() && !holds_results(folder))
+    if (!foreign.empty())
       throw InputError(fmt::format(
           "The folder \"{}\" has a file \"{}\" and is no folder of results (it has no "
           "versions.txt of axiforge): the run would write over it. Choose another folder with "

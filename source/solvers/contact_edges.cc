@@ -34,8 +34,6 @@ namespace axiforge::solvers
     result.tool    = middle.tool[0];
     result.touches = { { false, false, true } };
     result.normal.fill(middle.normal[0]);
-    for (unsigned int a = 0; a < 3; ++a)
-      result.share[a] = nodes[boundary.boundary_nodes[a]].share;
     for (unsigned int a = 0; a < 2; ++a)
       {
         const NodeContact &end = nodes[boundary.boundary_nodes[a]];

@@ -413,9 +413,11 @@ namespace axiforge::solvers
 
   bool ContactSet::relieve(const unsigned int b, const double allowed)
   {
-    NodeContact &contact = nodes[b];
+    NodeContact       &contact   = nodes[b];
+    const unsigned int neighbour = state.tables.boundary_nodes[b].axis_neighbour;
     if ((n_releases[b] == 0 && contact.share == 1) || contact.share == 0 ||
         contact.tool[1] != no_tool || contact.reaction[0] >= -allowed ||
+        (neighbour != no_tool && nodes[neighbour].active()) ||
         scene.tools[contact.tool[0]].friction.kind() == laws::FrictionKind::none)
       return false;
     contact.share = 0;

@@ -115,21 +115,23 @@ namespace axiforge::solvers
         edge.tool                    = no_tool;
         if (!boundary.owned)
           continue;
-        const ContactSet::EdgeContact touch = contact.edge(e, position);
-        if (touch.tool == no_tool)
+        const NodeContact &middle = contact.nodes[boundary.boundary_nodes[2]];
+        if (!middle.active())
           continue;
-        const FrictionKind kind = scene.tools[touch.tool].friction.kind();
+        const FrictionKind kind = scene.tools[middle.tool[0]].friction.kind();
         if (kind == FrictionKind::none)
           continue;
         // A node that sticks is held; one that cannot bear that bears a share of what shear can.
-        std::array<double, 3> share = touch.share;
-        if (kind == FrictionKind::sticking)
+        std::array<double, 3> share;
+        for (unsigned int a = 0; a < 3; ++a)
           {
-            for (double &s : share)
-              s = s < 1 ? s : 0;
-            if (share == std::array<double, 3>{})
-              continue;
+            share[a] = contact.nodes[boundary.boundary_nodes[a]].share;
+            if (kind == FrictionKind::sticking && share[a] == 1)
+              share[a] = 0;
           }
+        if (kind == FrictionKind::sticking && share == std::array<double, 3>{})
+          continue;
+        const ContactSet::EdgeContact touch = contact.edge(e, position);
 
         edge.tool                   = touch.tool;
         edge.measure                = touch.measure;

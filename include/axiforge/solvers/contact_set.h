@@ -100,7 +100,6 @@ namespace axiforge::solvers
       unsigned int           tool = no_tool; ///< no_tool: the edge does not touch
       std::array<bool, 3>    touches{};
       std::array<Vector2, 3> normal;    ///< of the face that the middle is on
-      std::array<double, 3>  share{};   ///< of the friction law's traction that acts there
       std::array<double, 3>  weight{};  ///< nodal (Simpson) weights, 1 in all on a whole edge
       std::array<double, 3>  measure{}; ///< area that each node stands for [mm^2]
     };

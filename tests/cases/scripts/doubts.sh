@@ -89,6 +89,18 @@ grep -qF -- '--resume continues there' short/stderr || fail "$(cat short/stderr)
 run short 0 cylinder_upsetting.prm "${coarse[@]}" --resume
 run whole 0 cylinder_upsetting.prm "${coarse[@]}"
 compare whole/output/history.csv short/output/history.csv -v rel=0
+name=resumed_beyond_the_end
+run beyond 2 cylinder_upsetting.prm "${coarse[@]}" --set "Time stepping/Most steps = 2"
+cp beyond/output/history.csv beyond/before.csv
+run beyond 1 cylinder_upsetting.prm "${coarse[@]}" --set "Process/End stroke = 0.1" --resume
+grep -qF 'beyond the end of the operation' beyond/stderr || fail "$(cat beyond/stderr)"
+cmp beyond/before.csv beyond/output/history.csv || fail "the results have been touched"
+
+# Half of the height in one step: nodes go straight, the volume does not.
+name=volume
+run volume 0 cylinder_upsetting.prm "${coarse[@]}" --set "Process/End stroke = 10" --set "Time stepping/Stroke per step = 10"
+grep -qE 'the volume has changed by -?[0-9.]+ %' volume/stdout || fail "$(cat volume/stdout)"
+! grep -qF 'the volume has changed' short/stdout || fail "$(cat short/stdout)"
 
 # A billet of the radius of its die rests in the fillet that leads from the wall to the cone.
 name=rests
